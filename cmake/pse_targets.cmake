@@ -1,0 +1,62 @@
+# How every target of pse is built: one function for a folder of the library, one for a folder of tests.
+
+find_program(CCACHE ccache)
+if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()
+
+# Settings that every target shares. Floating point means what the source says: no contraction, no fast-math.
+add_library(pse_settings INTERFACE)
+target_include_directories(pse_settings INTERFACE ${CMAKE_SOURCE_DIR}/src ${CMAKE_SOURCE_DIR}/include)
+target_compile_options(pse_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+                       -Werror -ffp-contract=off -fno-math-errno)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # g++ 12 reports these where nothing is wrong (std::variant and std::vector moves).
+  target_compile_options(pse_settings INTERFACE -Wno-maybe-uninitialized -Wno-stringop-overflow -Wno-array-bounds
+                         -Wno-restrict -Wno-dangling-pointer)
+endif()
+if(PSE_SANITIZE)
+  target_compile_options(pse_settings INTERFACE -fsanitize=${PSE_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(pse_settings INTERFACE -fsanitize=${PSE_SANITIZE})
+endif()
+
+# pse_folder(name [USES folder...] [LINKS target...]): the static library pse_<name> of all .cpp files here.
+# USES names the folders of src/ this one may include; scripts/check_includes.py holds them to it.
+function(pse_folder name)
+  cmake_parse_arguments(arg "" "" "USES;LINKS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  if(sources)
+    add_library(pse_${name} STATIC ${sources})
+    set(scope PUBLIC)
+  else()
+    add_library(pse_${name} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  target_link_libraries(pse_${name} ${scope} pse_settings)
+  foreach(used ${arg_USES})
+    target_link_libraries(pse_${name} ${scope} pse_${used})
+  endforeach()
+  if(arg_LINKS)
+    if(sources)
+      target_link_libraries(pse_${name} PRIVATE ${arg_LINKS})
+    else()
+      target_link_libraries(pse_${name} INTERFACE ${arg_LINKS})
+    endif()
+  endif()
+endfunction()
+
+# pse_tests(name [USES folder...] [LINKS target...]): one GoogleTest program of all .cpp files here.
+function(pse_tests name)
+  cmake_parse_arguments(arg "" "" "USES;LINKS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  add_executable(test_${name} ${sources})
+  target_link_libraries(test_${name} PRIVATE pse_settings GTest::gtest_main ${arg_LINKS})
+  foreach(used ${arg_USES})
+    target_link_libraries(test_${name} PRIVATE pse_${used})
+  endforeach()
+  target_compile_definitions(test_${name} PRIVATE PSE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  add_test(NAME ${name} COMMAND test_${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+endfunction()

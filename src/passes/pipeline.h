@@ -1,0 +1,31 @@
+// The compiler's middle: IR -> IR. pipeline.cpp is the table of contents.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "ir/module.h"
+
+namespace pse::passes {
+
+// A module cut by rate. functions[frame] runs once per frame: it has no parameters, reads only frame-rate inputs, may
+// write arrays of rate frame, and yields one f32 per frame slot. functions[module.entry] runs per sample and reads slot
+// k as `input (first_slot + k)`: module.inputs ends with one frame-rate Input "$slot.k" per slot. i32 travels by
+// bits2f/f2bits, boolean as 1 or 0. Both functions' `arrays` lists are the same, index for index; arrays of rate frame are
+// written only by the frame function, arrays of rate sample are touched only by the sample function.
+struct SplitModule {
+  ir::Module module;
+  std::uint32_t frame = 0;       // function index
+  std::uint32_t first_slot = 0;  // input index
+};
+
+struct PipelineOptions {
+  bool optimize = true;  // off: only what correctness needs (rates, split)
+  // Called after each pass with its name and the module, for --emit and tests.
+  std::function<void(std::string_view pass, const ir::Module&)> after_pass;
+};
+
+SplitModule run_pipeline(ir::Module module, const PipelineOptions& options = {});
+
+}  // namespace pse::passes

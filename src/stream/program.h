@@ -1,0 +1,43 @@
+// From text to something that runs: the whole compiler behind one call, and what a host needs to know of the result.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "codegen/kernel.h"
+#include "diag/diagnostics.h"
+#include "lower/lower.h"
+#include "passes/pipeline.h"
+
+namespace pse {
+
+struct CompileOptions {
+  LowerOptions lower;
+  CodegenOptions codegen;
+  bool interpret = false;  // run by the interpreter instead of compiled code
+  bool optimize = true;
+  std::function<void(std::string_view pass, const ir::Module&)> after_pass;
+};
+
+struct CompileTimes {
+  double parse = 0, lower = 0, passes = 0, codegen = 0;  // seconds
+  bool from_cache = false;
+};
+
+// A compiled program. Immutable; share it between threads and runs.
+struct Program {
+  std::vector<Knob> knobs;
+  std::vector<ProgramOutput> outputs;
+  std::vector<std::string> reads;
+  std::shared_ptr<const passes::SplitModule> split;
+  std::shared_ptr<const Kernel> kernel;
+  CompileTimes times;
+
+  const ir::Module& module() const { return split->module; }
+};
+
+// Compiles file `file` of `sources`. Null after errors, which are in `diagnostics`.
+std::shared_ptr<const Program> compile(SourceMap& sources, FileId file, const LowerHost& host, const CompileOptions& options,
+                                       Diagnostics& diagnostics);
+
+}  // namespace pse

@@ -11,8 +11,8 @@ target_include_directories(pse_settings INTERFACE ${CMAKE_SOURCE_DIR}/src ${CMAK
 target_compile_options(pse_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
                        -Werror -ffp-contract=off -fno-math-errno)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # g++ 12 reports these where nothing is wrong (std::variant and std::vector moves).
-  target_compile_options(pse_settings INTERFACE -Wno-maybe-uninitialized -Wno-stringop-overflow -Wno-array-bounds
+  # g++ 12 reports these where nothing is wrong (designated initialisers; std::variant and std::vector moves).
+  target_compile_options(pse_settings INTERFACE -Wno-missing-field-initializers -Wno-maybe-uninitialized -Wno-stringop-overflow -Wno-array-bounds
                          -Wno-restrict -Wno-dangling-pointer)
 endif()
 if(PSE_SANITIZE)

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "stream/batches.h"
 #include "stream/program.h"
 
 namespace pse {
@@ -38,20 +39,19 @@ struct ExecuteOptions {
   int threads = 0;            // 0: as many as the machine has
   bool ordered_sink = false;  // the sink gets tiles one at a time, row of tiles by row of tiles, left to right
   std::function<void(double done)> progress;  // 0..1, from one thread at a time, at most 20 times a second
-  std::size_t memory_limit = 0;  // with ordered_sink: bytes of finished tiles kept waiting; 0: no limit
+  std::size_t memory_limit = 0;  // bytes of tiles alive at once; 0: what keeps the threads busy
 };
-
-enum class RunEnd { finished, cancelled, failed };
 
 struct RunResult {
   RunEnd end = RunEnd::finished;
   std::int32_t failed_check = -1;  // when failed: index of Module::checks
-  int x = 0, y = 0;                // when failed: a pixel where it happened
+  int x = 0, y = 0;                // when failed: a pixel where it happened; (-1, -1) in the frame's part
   double seconds = 0;
 };
 
 // `state` must be filled for the frame (uniforms of knobs and frame names, externals); this runs the frame function.
-// Setting status.cancel stops within 50 ms. The result does not depend on tile size or threads.
+// Setting status.cancel stops within 50 ms. Exceptions of source and sink stop the run and are thrown again from here.
+// The result does not depend on tile size or threads.
 RunResult execute(const Program& program, FrameState& state, const TileSource& source, const TileSink& sink,
                   const ExecuteOptions& options, RunStatus& status);
 

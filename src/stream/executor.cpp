@@ -1,0 +1,90 @@
+// Cuts the window into tiles and runs them as batches.
+#include "stream/executor.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace pse {
+namespace {
+
+// The tiles of a window, row by row of tiles.
+class Tiling {
+ public:
+  Tiling(const Rect& window, int tile_width, int tile_height)
+      : window_(window),
+        tile_width_(std::clamp(tile_width, 1, std::max(window.width(), 1))),
+        tile_height_(std::clamp(tile_height, 1, std::max(window.height(), 1))),
+        columns_((std::max(window.width(), 0) + tile_width_ - 1) / tile_width_),
+        rows_((std::max(window.height(), 0) + tile_height_ - 1) / tile_height_) {}
+
+  std::int64_t count() const { return std::int64_t{columns_} * rows_; }
+  std::int64_t largest() const { return std::int64_t{tile_width_} * tile_height_; }
+
+  Rect rect(std::int64_t tile) const {
+    const int x0 = window_.x0 + static_cast<int>(tile % columns_) * tile_width_;
+    const int y0 = window_.y0 + static_cast<int>(tile / columns_) * tile_height_;
+    return {x0, y0, std::min(x0 + tile_width_, window_.x1), std::min(y0 + tile_height_, window_.y1)};
+  }
+
+ private:
+  Rect window_;
+  int tile_width_, tile_height_;
+  int columns_, rows_;
+};
+
+std::int64_t area(const Rect& rect) { return std::int64_t{rect.width()} * rect.height(); }
+
+}  // namespace
+
+RunResult execute(const Program& program, FrameState& state, const TileSource& source, const TileSink& sink,
+                  const ExecuteOptions& options, RunStatus& status) {
+  const auto start = std::chrono::steady_clock::now();
+  RunResult result;
+  const auto finish = [&] {
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+  };
+
+  // Compute what holds for the whole frame.
+  program.kernel->run_frame(state, status);
+  if (status.failed_check >= 0) {
+    result = {RunEnd::failed, status.failed_check, -1, -1, 0};
+    return finish();
+  }
+  if (status.cancel) {
+    result.end = RunEnd::cancelled;
+    return finish();
+  }
+
+  // Run the tiles.
+  const Tiling tiling(options.window, options.tile_width, options.tile_height);
+  BatchPlan plan;
+  plan.batches = tiling.count();
+  plan.capacity = tiling.largest();
+  plan.count = [&](std::int64_t tile) { return area(tiling.rect(tile)); };
+  plan.fill = [&](std::int64_t tile, std::span<float* const> planes) {
+    const Rect rect = tiling.rect(tile);
+    source({rect, area(rect), planes});
+  };
+  plan.drain = [&](std::int64_t tile, std::span<float* const> planes) {
+    const Rect rect = tiling.rect(tile);
+    sink({rect, area(rect), planes});
+  };
+  plan.ordered = options.ordered_sink;
+  plan.memory_limit = options.memory_limit;
+  plan.threads = options.threads;
+  plan.progress = options.progress;
+  const BatchEnd end = run_batches(program, state, plan, status);
+
+  // Turn the place of a failure into a pixel.
+  result.end = end.end;
+  result.failed_check = end.failed_check;
+  if (end.end == RunEnd::failed) {
+    const Rect rect = tiling.rect(end.failed_batch);
+    result.x = rect.x0 + static_cast<int>(end.failed_sample % rect.width());
+    result.y = rect.y0 + static_cast<int>(end.failed_sample / rect.width());
+  }
+  return finish();
+}
+
+}  // namespace pse

@@ -1,0 +1,177 @@
+// Coordinates of the image plane. Everything is computed in double and rounded once, so that a pixel's coordinates are
+// the same whatever tile, window or machine computes it.
+#include "stream/image_plane.h"
+
+#include <algorithm>
+#include <memory>
+#include <string_view>
+
+namespace pse {
+namespace {
+
+enum class Coordinate { x, y, u, v, px, py, point_x, point_y, point_z };
+
+constexpr std::array<std::string_view, 9> coordinate_names = {"x",  "y",       "u",       "v",      "px",
+                                                             "py", "point.0", "point.1", "point.2"};
+
+struct PlaneInput {
+  std::size_t input;  // index in Module::inputs
+  Coordinate coordinate;
+};
+
+std::vector<PlaneInput> find_plane_inputs(const ir::Module& module) {
+  std::vector<PlaneInput> found;
+  for (std::size_t i = 0; i < module.inputs.size(); ++i) {
+    if (module.inputs[i].rate != ir::Rate::sample) continue;
+    const auto name = std::find(coordinate_names.begin(), coordinate_names.end(), module.inputs[i].name);
+    if (name != coordinate_names.end())
+      found.push_back({i, static_cast<Coordinate>(name - coordinate_names.begin())});
+  }
+  return found;
+}
+
+struct Place {
+  double x, y, z;
+};
+
+// The sample of pixel (column, row) in the plane, before any transform.
+Place plane_place(const ImagePlane& plane, int column, int row) {
+  const double px = column + plane.sample_x, py = row + plane.sample_y;
+  return {(2 * px - plane.width) / plane.height, (plane.height - 2 * py) / plane.height, 0};
+}
+
+Place transformed(const PlaneTransform& m, const Place& p) {
+  const auto row = [&](std::size_t r) { return m[4 * r] * p.x + m[4 * r + 1] * p.y + m[4 * r + 2] * p.z + m[4 * r + 3]; };
+  const double w = row(3);
+  return {row(0) / w, row(1) / w, row(2) / w};
+}
+
+double coordinate(const ImagePlane& plane, Coordinate which, int column, int row) {
+  const double px = column + plane.sample_x, py = row + plane.sample_y;
+  switch (which) {
+    case Coordinate::u: return px / plane.width;
+    case Coordinate::v: return 1 - py / plane.height;
+    case Coordinate::px: return px;
+    case Coordinate::py: return py;
+    default: break;
+  }
+  Place place = plane_place(plane, column, row);
+  if (plane.transform) place = transformed(*plane.transform, place);
+  if (which == Coordinate::x || which == Coordinate::point_x) return place.x;
+  if (which == Coordinate::y || which == Coordinate::point_y) return place.y;
+  return place.z;
+}
+
+bool varies_along_row(Coordinate which) {
+  return which == Coordinate::x || which == Coordinate::u || which == Coordinate::px || which == Coordinate::point_x;
+}
+
+// One coordinate's values over the window's columns or rows, where it depends on one of them only.
+struct Axis {
+  std::size_t input;
+  bool along_row;
+  std::vector<float> values;
+};
+
+Axis make_axis(const ImagePlane& plane, const PlaneInput& input, const Rect& window) {
+  Axis axis{input.input, varies_along_row(input.coordinate), {}};
+  if (axis.along_row) {
+    for (int column = window.x0; column < window.x1; ++column)
+      axis.values.push_back(static_cast<float>(coordinate(plane, input.coordinate, column, 0)));
+  } else {
+    for (int row = window.y0; row < window.y1; ++row)
+      axis.values.push_back(static_cast<float>(coordinate(plane, input.coordinate, 0, row)));
+  }
+  return axis;
+}
+
+void fill_axis(const Axis& axis, const Rect& window, const TileView& tile) {
+  float* out = tile.planes[axis.input];
+  for (int row = tile.rect.y0; row < tile.rect.y1; ++row, out += tile.rect.width()) {
+    if (axis.along_row)
+      std::copy_n(axis.values.begin() + (tile.rect.x0 - window.x0), tile.rect.width(), out);
+    else
+      std::fill_n(out, tile.rect.width(), axis.values[static_cast<std::size_t>(row - window.y0)]);
+  }
+}
+
+void fill_everywhere(const ImagePlane& plane, const PlaneInput& input, const TileView& tile) {
+  float* out = tile.planes[input.input];
+  for (int row = tile.rect.y0; row < tile.rect.y1; ++row)
+    for (int column = tile.rect.x0; column < tile.rect.x1; ++column)
+      *out++ = static_cast<float>(coordinate(plane, input.coordinate, column, row));
+}
+
+bool is_transformed(Coordinate which) {
+  return which == Coordinate::x || which == Coordinate::y || which >= Coordinate::point_x;
+}
+
+}  // namespace
+
+std::optional<PlaneTransform> plane_transform(const std::vector<double>& n) {
+  PlaneTransform m = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  if (n.size() == 16) {
+    std::copy(n.begin(), n.end(), m.begin());
+  } else if (n.size() == 9 || n.size() == 6) {
+    // Column 2 of a planar matrix is the translation: column 3 of ours.
+    for (std::size_t r = 0; r < n.size() / 3; ++r) {
+      const std::size_t to = r == 2 ? 3 : r;
+      m[4 * to] = n[3 * r], m[4 * to + 1] = n[3 * r + 1], m[4 * to + 3] = n[3 * r + 2];
+    }
+  } else {
+    return std::nullopt;
+  }
+  return m;
+}
+
+const std::vector<StreamName>& image_plane_names() {
+  using enum ir::Rate;
+  static const std::vector<StreamName> names = {
+      {"x", 1, sample},     {"y", 1, sample},        {"u", 1, sample},          {"v", 1, sample},
+      {"point", 3, sample}, {"px", 1, sample},       {"py", 1, sample},         {"frame", 1, frame},
+      {"time", 1, frame},   {"fps", 1, frame},       {"width", 1, frame},       {"height", 1, frame},
+      {"aspect", 1, frame}, {"pixelsize", 1, frame}, {"pixel_freq", 1, frame},  {"seed", 1, frame},
+      {"begin_frame", 1, frame}};
+  return names;
+}
+
+void set_plane_uniforms(const ir::Module& module, const ImagePlane& plane, FrameState& state) {
+  const double pixel_size = 2.0 / plane.height;
+  const std::array<std::pair<std::string_view, double>, 10> values = {{{"frame", plane.frame},
+                                                                       {"time", plane.frame / plane.fps},
+                                                                       {"fps", plane.fps},
+                                                                       {"width", plane.width},
+                                                                       {"height", plane.height},
+                                                                       {"aspect", double(plane.width) / plane.height},
+                                                                       {"pixelsize", pixel_size},
+                                                                       {"pixel_freq", 0.5 / pixel_size},
+                                                                       {"seed", plane.seed},
+                                                                       {"begin_frame", 1}}};
+  state.uniforms.resize(module.inputs.size());
+  for (std::size_t i = 0; i < module.inputs.size(); ++i) {
+    if (module.inputs[i].rate == ir::Rate::sample) continue;
+    for (const auto& [name, value] : values)
+      if (module.inputs[i].name == name) state.uniforms[i] = static_cast<float>(value);
+  }
+}
+
+TileSource image_plane_source(const ir::Module& module, const ImagePlane& plane, const Rect& window) {
+  // Tabulate what depends on the column or on the row alone; a transform mixes the two.
+  struct Tables {
+    std::vector<Axis> axes;
+    std::vector<PlaneInput> others;
+  };
+  auto tables = std::make_shared<Tables>();
+  for (const PlaneInput& input : find_plane_inputs(module)) {
+    if (plane.transform && is_transformed(input.coordinate))
+      tables->others.push_back(input);
+    else
+      tables->axes.push_back(make_axis(plane, input, window));
+  }
+  return [tables = std::shared_ptr<const Tables>(tables), plane, window](const TileView& tile) {
+    for (const Axis& axis : tables->axes) fill_axis(axis, window, tile);
+    for (const PlaneInput& input : tables->others) fill_everywhere(plane, input, tile);
+  };
+}
+
+}  // namespace pse

@@ -22,7 +22,7 @@ struct Diagnostic {
 
 class Diagnostics {
  public:
-  // At most this many errors are kept; the rest are counted.
+  // At most this many errors, and as many warnings, are kept; further errors are only counted.
   static constexpr std::size_t limit = 100;
 
   void add(Diagnostic diagnostic);
@@ -37,14 +37,16 @@ class Diagnostics {
 
  private:
   std::vector<Diagnostic> all_;
-  std::size_t errors_ = 0;
+  std::size_t errors_ = 0;       // all, kept or not
+  std::size_t kept_errors_ = 0;
+  std::size_t kept_others_ = 0;  // warnings and notes
 };
 
 // Source line, caret and suggestion for each diagnostic, ready for a terminal.
 std::string print_text(const Diagnostics& diagnostics, const SourceMap& sources, bool colour);
 
 // A JSON array with one object per diagnostic: severity, code, message, file, line, column, end_line, end_column,
-// expected, suggestion. Lines and columns count from 1.
+// expected, suggestion. Lines and columns count from 1; columns, here and in print_text, count characters, not bytes.
 std::string print_json(const Diagnostics& diagnostics, const SourceMap& sources);
 
 // The candidate nearest to `name` by edit distance, if one is near enough to be worth naming; else empty.

@@ -17,7 +17,20 @@ struct Expr;
 struct Stmt;
 using ExprPtr = std::unique_ptr<Expr>;
 using StmtPtr = std::unique_ptr<Stmt>;
-using Block = std::vector<StmtPtr>;
+
+// A run of statements and how it was written: in `{ }`, indented below its head, or (`same_line`) after it.
+struct Block {
+  std::vector<StmtPtr> statements;
+  bool braces = false;
+  bool same_line = false;  // the whole block stands on its head's line
+  Span span;               // from the first statement, or `{`, to the end of the last, or `}`
+
+  auto begin() const { return statements.begin(); }
+  auto end() const { return statements.end(); }
+  std::size_t size() const { return statements.size(); }
+  bool empty() const { return statements.empty(); }
+  const StmtPtr& operator[](std::size_t i) const { return statements[i]; }
+};
 
 // ---- Expressions ----------------------------------------------------------------------------------------------
 
@@ -110,6 +123,7 @@ struct Expr {
                ConditionalExpr, CallExpr, IndexExpr, MemberExpr>
       node;
   bool parenthesised = false;  // written in redundant or grouping parentheses; kept by the formatter
+  std::uint16_t height = 1;    // levels of this tree, leaves being 1; at most ParseLimits::max_height
 };
 
 // ---- Statements -----------------------------------------------------------------------------------------------
@@ -138,6 +152,7 @@ struct ExprStmt {
 struct IfBranch {
   ExprPtr condition;
   Block body;
+  Span head;  // from the keyword to the end of the condition
 };
 struct IfStmt {
   std::vector<IfBranch> branches;

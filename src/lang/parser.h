@@ -9,7 +9,8 @@ namespace pse::lang {
 // What a text may ask of the front end before it is refused with an error.
 struct ParseLimits {
   std::size_t max_bytes = 4u << 20;
-  int max_nesting = 200;  // of brackets, blocks and operators together
+  int max_nesting = 200;  // of brackets, blocks, prefix and right-associative operators together
+  int max_height = 1000;  // of one expression's tree: a long chain a + b + c + ... is as high as it is long
   std::size_t max_nodes = 1'000'000;
 };
 

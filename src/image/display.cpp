@@ -1,0 +1,86 @@
+// The display transform of whole rows; see display.h.
+#include "image/display.h"
+
+#include <algorithm>
+
+namespace pse::image {
+
+Result<DisplayChannels> pick_display_channels(const ImageSpec& spec, const std::string& file) {
+  DisplayChannels chosen;
+  const int r = spec.find("R"), g = spec.find("G"), b = spec.find("B"), y = spec.find("Y");
+  chosen.alpha = spec.find("A");
+  if (r >= 0 && g >= 0 && b >= 0) {
+    chosen.values = {r, g, b};
+  } else if (y >= 0) {
+    chosen.values = {y};
+  }
+  if (!chosen.values.empty()) {
+    if (chosen.count() == static_cast<int>(spec.channels.size())) return chosen;
+    return fail(ErrorKind::unsupported,
+                file + " can hold only colour and alpha; write the other channels to an .exr file");
+  }
+
+  // No colour: the channels of one layer, as data.
+  const auto layer_of = [](const std::string& name) {
+    const auto dot = name.rfind('.');
+    return dot == std::string::npos ? std::string() : name.substr(0, dot);
+  };
+  const std::string layer = layer_of(spec.channels.front().name);
+  for (const auto& channel : spec.channels)
+    if (layer_of(channel.name) != layer || (layer.empty() && spec.channels.size() > 1))
+      return fail(ErrorKind::unsupported,
+                  file + " can hold only one output; write several to an .exr file");
+  if (spec.channels.size() > 4)
+    return fail(ErrorKind::unsupported, file + " can hold at most four channels");
+  chosen.colour = false;
+  chosen.alpha = spec.channels.size() == 4 ? 3 : -1;
+  chosen.values = spec.channels.size() == 1 ? std::vector{0} : std::vector{0, 1, 2};
+  if (spec.channels.size() == 2) chosen.values = {0, 1, -1};
+  return chosen;
+}
+
+DisplayTransform::DisplayTransform(DisplayChannels channels, ColourSpace working, Tone tone)
+    : channels_(std::move(channels)), tone_(channels_.colour ? tone : Tone::raw) {
+  adapt_ = tone_ != Tone::raw && working != ColourSpace::lin_rec709 && channels_.values.size() == 3;
+  if (adapt_)
+    to_display_ = colour_matrix(chromaticities_of(working), chromaticities_of(ColourSpace::lin_rec709));
+}
+
+void DisplayTransform::row(std::span<const float* const> planes, int width, bool keep_premultiplied,
+                           float* to) const {
+  const std::size_t n = channels_.values.size();
+  const std::size_t step = static_cast<std::size_t>(channels_.count());
+  const float* alpha =
+      channels_.alpha >= 0 ? planes[static_cast<std::size_t>(channels_.alpha)] : nullptr;
+  for (int x = 0; x < width; ++x) {
+    float* pixel = to + static_cast<std::size_t>(x) * step;
+    for (std::size_t i = 0; i < n; ++i)
+      pixel[i] = channels_.values[i] < 0 ? 0.0f : planes[static_cast<std::size_t>(channels_.values[i])][x];
+    if (alpha != nullptr) {
+      const float a = alpha[x];
+      if (channels_.colour && !keep_premultiplied && a > 0 && a < 1)
+        for (std::size_t i = 0; i < n; ++i) pixel[i] /= a;
+      pixel[n] = a;
+    }
+    if (tone_ == Tone::raw) continue;
+    if (adapt_) apply(to_display_, pixel, pixel + 1, pixel + 2, 1);
+    for (std::size_t i = 0; i < n; ++i) {
+      const float light = tone_ == Tone::filmic ? filmic(pixel[i]) : pixel[i];
+      pixel[i] = srgb_encode(std::min(std::max(light, 0.0f), 1.0f));
+    }
+  }
+}
+
+std::uint8_t to_8_bits(float value, float threshold) {
+  if (!(value > 0)) return 0;
+  if (value >= 1) return 255;
+  return static_cast<std::uint8_t>(value * 255.0f + threshold);
+}
+
+std::uint16_t to_16_bits(float value) {
+  if (!(value > 0)) return 0;
+  if (value >= 1) return 65535;
+  return static_cast<std::uint16_t>(value * 65535.0f + 0.5f);
+}
+
+}  // namespace pse::image

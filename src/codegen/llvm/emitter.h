@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <llvm/IR/MDBuilder.h>
 #include <llvm/IR/Module.h>
 
 #include "codegen/array_layout.h"

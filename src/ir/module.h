@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -106,7 +107,8 @@ struct External {
 };
 
 struct Module {
-  std::vector<Function> functions;  // functions[entry] is the program; the others are called
+  // functions[entry] is the program; the others are called. A deque: a Function stays where it is while others are added.
+  std::deque<Function> functions;
   std::uint32_t entry = 0;
   std::vector<FloatTable> float_tables;
   std::vector<IntTable> int_tables;

@@ -1,0 +1,237 @@
+// A small loader: places the sections of a relocatable object in one mapping, applies the relocations that
+// position-independent x86-64 code needs (System V ABI, AMD64 supplement, section 4.4), and makes it executable.
+// Every offset is checked: a damaged file is refused, never followed.
+#include "codegen/code_object.h"
+
+#include <elf.h>
+#include <sys/mman.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+namespace pse {
+namespace {
+
+// What LLVM may call where the processor lacks an instruction, or to move memory.
+const void* host_function(std::string_view name) {
+  using F = float (*)(float);
+  using F3 = float (*)(float, float, float);
+  const auto address = [](auto* function) { return reinterpret_cast<const void*>(function); };
+  if (name == "fmaf") return address(static_cast<F3>(&::fmaf));
+  if (name == "floorf") return address(static_cast<F>(&::floorf));
+  if (name == "ceilf") return address(static_cast<F>(&::ceilf));
+  if (name == "truncf") return address(static_cast<F>(&::truncf));
+  if (name == "memset") return address(&::memset);
+  if (name == "memcpy") return address(&::memcpy);
+  if (name == "memmove") return address(&::memmove);
+  return nullptr;
+}
+
+// jmp *0(%rip), then the address: reaches functions further away than 2 GiB.
+constexpr std::size_t stub_size = 16;
+void write_stub(std::byte* place, const void* target) {
+  constexpr unsigned char jump[6] = {0xff, 0x25, 0, 0, 0, 0};
+  std::memcpy(place, jump, sizeof jump);
+  std::memcpy(place + sizeof jump, &target, sizeof target);
+}
+
+constexpr std::size_t no_place = ~std::size_t{0};
+
+class Loader {
+ public:
+  explicit Loader(std::span<const std::byte> file) : file_(file) {}
+
+  bool read_headers() {
+    Elf64_Ehdr header;
+    if (!read(0, header) || std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0) return false;
+    if (header.e_ident[EI_CLASS] != ELFCLASS64 || header.e_type != ET_REL || header.e_machine != EM_X86_64) return false;
+    for (std::size_t i = 0; i < header.e_shnum; ++i) {
+      Elf64_Shdr section;
+      if (!read(header.e_shoff + i * sizeof section, section)) return false;
+      if (section.sh_type != SHT_NOBITS && !inside(section.sh_offset, section.sh_size)) return false;
+      sections_.push_back(section);
+    }
+    return read_symbols();
+  }
+
+  // Gives every section that is needed at run time its place, and one stub to every function of the host.
+  bool lay_out() {
+    std::size_t end = 0;
+    for (const Elf64_Shdr& section : sections_) {
+      const bool needed = (section.sh_flags & SHF_ALLOC) != 0 && section.sh_type != SHT_X86_64_UNWIND &&
+                          section.sh_type != SHT_NOTE;
+      if (!needed || section.sh_size == 0) {
+        places_.push_back(no_place);
+        continue;
+      }
+      const std::size_t align = section.sh_addralign > 64 ? section.sh_addralign : 64;
+      if ((section.sh_flags & SHF_WRITE) != 0 || align > 4096 || (align & (align - 1)) != 0) return false;
+      if (section.sh_size > limit) return false;
+      end = (end + align - 1) & ~(align - 1);
+      places_.push_back(end);
+      end += section.sh_size;
+      if (end > limit) return false;
+    }
+    stubs_ = (end + 63) & ~std::size_t{63};
+    size_ = stubs_ + stub_size * symbols_.size();
+    return true;
+  }
+
+  std::size_t size() const { return size_; }
+
+  bool fill(std::byte* memory) {
+    for (std::size_t i = 0; i < sections_.size(); ++i) {
+      if (places_[i] == no_place || sections_[i].sh_type == SHT_NOBITS) continue;
+      std::memcpy(memory + places_[i], file_.data() + sections_[i].sh_offset, sections_[i].sh_size);
+    }
+    for (std::size_t i = 0; i < symbols_.size(); ++i) {
+      if (symbols_[i].st_shndx != SHN_UNDEF) continue;
+      if (const void* function = host_function(name(i))) write_stub(memory + stubs_ + stub_size * i, function);
+    }
+    for (const Elf64_Shdr& section : sections_) {
+      if (section.sh_type == SHT_RELA && !relocate(section, memory)) return false;
+      if (section.sh_type == SHT_REL) return false;
+    }
+    return true;
+  }
+
+  void export_symbols(const std::byte* memory, std::unordered_map<std::string, const void*>& to) const {
+    for (std::size_t i = 0; i < symbols_.size(); ++i) {
+      std::size_t place;
+      if (ELF64_ST_BIND(symbols_[i].st_info) == STB_GLOBAL && symbols_[i].st_shndx != SHN_UNDEF && place_of(i, place)) {
+        to.emplace(std::string(name(i)), memory + place);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t limit = std::size_t{1} << 30;
+
+  bool inside(std::uint64_t offset, std::uint64_t size) const {
+    return offset <= file_.size() && size <= file_.size() - offset;
+  }
+
+  template <class T>
+  bool read(std::uint64_t offset, T& to) const {
+    if (!inside(offset, sizeof(T))) return false;
+    std::memcpy(&to, file_.data() + offset, sizeof(T));
+    return true;
+  }
+
+  bool read_symbols() {
+    for (const Elf64_Shdr& section : sections_) {
+      if (section.sh_type != SHT_SYMTAB) continue;
+      if (section.sh_link >= sections_.size()) return false;
+      const Elf64_Shdr& strings = sections_[section.sh_link];
+      names_ = {reinterpret_cast<const char*>(file_.data()) + strings.sh_offset, strings.sh_size};
+      for (std::uint64_t at = 0; at + sizeof(Elf64_Sym) <= section.sh_size; at += sizeof(Elf64_Sym)) {
+        Elf64_Sym symbol;
+        if (!read(section.sh_offset + at, symbol)) return false;
+        symbols_.push_back(symbol);
+      }
+    }
+    return true;
+  }
+
+  std::string_view name(std::size_t symbol) const {
+    const std::size_t at = symbols_[symbol].st_name;
+    if (at >= names_.size()) return {};
+    const std::string_view rest = names_.substr(at);
+    return rest.substr(0, rest.find('\0'));
+  }
+
+  // Where a symbol is, from the start of the mapping.
+  bool place_of(std::size_t index, std::size_t& place) const {
+    if (index >= symbols_.size()) return false;
+    const Elf64_Sym& symbol = symbols_[index];
+    if (symbol.st_shndx == SHN_UNDEF) {
+      place = stubs_ + stub_size * index;
+      return host_function(name(index)) != nullptr;
+    }
+    if (symbol.st_shndx >= places_.size() || places_[symbol.st_shndx] == no_place) return false;
+    if (symbol.st_value > sections_[symbol.st_shndx].sh_size) return false;
+    place = places_[symbol.st_shndx] + symbol.st_value;
+    return true;
+  }
+
+  bool relocate(const Elf64_Shdr& table, std::byte* memory) const {
+    if (table.sh_info >= sections_.size()) return false;
+    const std::size_t target = places_[table.sh_info];
+    if (target == no_place) return true;  // of a section that is not loaded
+    const std::size_t target_size = sections_[table.sh_info].sh_size;
+    for (std::uint64_t at = 0; at + sizeof(Elf64_Rela) <= table.sh_size; at += sizeof(Elf64_Rela)) {
+      Elf64_Rela entry;
+      std::size_t symbol;
+      if (!read(table.sh_offset + at, entry) || !place_of(ELF64_R_SYM(entry.r_info), symbol)) return false;
+      const auto type = ELF64_R_TYPE(entry.r_info);
+      const std::size_t width = type == R_X86_64_64 ? 8 : 4;
+      if (entry.r_offset > target_size || target_size - entry.r_offset < width) return false;
+      std::byte* place = memory + target + entry.r_offset;
+      if (type == R_X86_64_64) {
+        const std::uint64_t value = reinterpret_cast<std::uintptr_t>(memory + symbol) + static_cast<std::uint64_t>(entry.r_addend);
+        std::memcpy(place, &value, sizeof value);
+      } else if (type == R_X86_64_PC32 || type == R_X86_64_PLT32) {
+        const std::int64_t value = static_cast<std::int64_t>(symbol) + entry.r_addend - static_cast<std::int64_t>(target + entry.r_offset);
+        const auto narrow = static_cast<std::int32_t>(value);
+        if (narrow != value) return false;
+        std::memcpy(place, &narrow, sizeof narrow);
+      } else {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  std::span<const std::byte> file_;
+  std::string_view names_;
+  std::vector<Elf64_Shdr> sections_;
+  std::vector<Elf64_Sym> symbols_;
+  std::vector<std::size_t> places_;  // per section: offset in the mapping
+  std::size_t stubs_ = 0, size_ = 0;
+};
+
+}  // namespace
+
+std::expected<CodeObject, std::string> CodeObject::load(std::span<const std::byte> object) {
+  const auto refuse = [] { return std::unexpected(std::string("the compiled code cannot be loaded")); };
+  Loader loader(object);
+  if (!loader.read_headers() || !loader.lay_out()) return refuse();
+  CodeObject code;
+  code.size_ = loader.size();
+  void* pages = mmap(nullptr, code.size_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (pages == MAP_FAILED) return std::unexpected(std::string("there is no memory for compiled code"));
+  code.pages_ = pages;
+  auto* memory = static_cast<std::byte*>(pages);
+  if (!loader.fill(memory)) return refuse();
+  if (mprotect(pages, code.size_, PROT_READ | PROT_EXEC) != 0) {
+    return std::unexpected(std::string("the system does not allow compiled code to run"));
+  }
+  loader.export_symbols(memory, code.symbols_);
+  return code;
+}
+
+CodeObject::CodeObject(CodeObject&& other) noexcept
+    : pages_(std::exchange(other.pages_, nullptr)),
+      size_(std::exchange(other.size_, 0)),
+      symbols_(std::move(other.symbols_)) {}
+
+CodeObject& CodeObject::operator=(CodeObject&& other) noexcept {
+  std::swap(pages_, other.pages_);
+  std::swap(size_, other.size_);
+  std::swap(symbols_, other.symbols_);
+  return *this;
+}
+
+CodeObject::~CodeObject() {
+  if (pages_) munmap(pages_, size_);
+}
+
+const void* CodeObject::find(const std::string& symbol) const {
+  const auto found = symbols_.find(symbol);
+  return found == symbols_.end() ? nullptr : found->second;
+}
+
+}  // namespace pse

@@ -1,0 +1,111 @@
+// Prepares the KernelCall, and runs what is left over when the samples do not fill the last vector.
+#include "codegen/compiled_kernel.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace pse {
+namespace {
+
+void report(const KernelCall& call, RunStatus& status, std::int64_t first) {
+  if (call.failed_check < 0) return;
+  std::int32_t none = -1;
+  if (status.failed_check.compare_exchange_strong(none, call.failed_check)) {
+    status.failed_sample = static_cast<std::uint32_t>(first + call.failed_sample);
+  }
+  status.cancel = true;
+}
+
+float* aligned(float* memory) {
+  const auto address = std::bit_cast<std::uintptr_t>(memory);
+  return memory + ((64 - address % 64) % 64) / sizeof(float);
+}
+
+}  // namespace
+
+std::unique_ptr<CompiledKernel> CompiledKernel::make(const passes::SplitModule& split, CodeObject code, int width) {
+  std::unique_ptr<CompiledKernel> kernel(new CompiledKernel(split, std::move(code), width));
+  return kernel->samples_ && kernel->frame_ ? std::move(kernel) : nullptr;
+}
+
+CompiledKernel::CompiledKernel(const passes::SplitModule& split, CodeObject code, int width)
+    : code_(std::move(code)),
+      width_(width),
+      output_count_(split.module.outputs.size()),
+      slot_count_(split.module.functions[split.frame].body.yields.size()),
+      first_slot_(split.first_slot),
+      frame_layout_(split.module.main().arrays),
+      sample_layout_(split.module.main().arrays, width) {
+  for (const ir::Input& input : split.module.inputs) is_sample_input_.push_back(input.rate == ir::Rate::sample);
+  for (const ir::Array& array : split.module.main().arrays) initial_lengths_.push_back(array.initial_length);
+  samples_ = reinterpret_cast<KernelEntry>(const_cast<void*>(code_.find(samples_symbol)));
+  frame_ = reinterpret_cast<KernelEntry>(const_cast<void*>(code_.find(frame_symbol)));
+}
+
+void CompiledKernel::run_frame(FrameState& state, RunStatus& status) const {
+  state.uniforms.resize(is_sample_input_.size());
+  state.arrays.assign(static_cast<std::size_t>(frame_layout_.size), 0.0f);
+  state.array_lengths = initial_lengths_;
+  std::vector<float> slots(slot_count_);
+  float* const outputs[] = {slots.data()};
+  KernelCall call;
+  call.outputs = outputs;
+  call.count = 1;
+  call.uniforms = state.uniforms.data();
+  call.frame_arrays = state.arrays.data();
+  call.frame_lengths = state.array_lengths.data();
+  call.cancel = &status.cancel;
+  call.externals = state.externals.data();
+  frame_(&call);
+  report(call, status, 0);
+  std::ranges::copy(slots, state.uniforms.begin() + static_cast<std::ptrdiff_t>(first_slot_));
+}
+
+void CompiledKernel::run_samples(const FrameState& state, RunStatus& status, Scratch& scratch,
+                                 const float* const* inputs, float* const* outputs, std::int64_t count) const {
+  // Scratch: the arrays of a vector of samples, then buffers for the last, partly filled vector.
+  const auto width = static_cast<std::size_t>(width_);
+  const auto arrays = static_cast<std::size_t>(sample_layout_.size);
+  const std::size_t needed = arrays + width * (is_sample_input_.size() + output_count_) + 16;
+  if (scratch.memory.size() < needed) scratch.memory.resize(needed);
+
+  KernelCall call;
+  call.inputs = inputs;
+  call.outputs = outputs;
+  call.count = count / width_ * width_;
+  call.uniforms = state.uniforms.data();
+  // The sample function only reads what belongs to the frame.
+  call.frame_arrays = const_cast<float*>(state.arrays.data());
+  call.frame_lengths = const_cast<std::int32_t*>(state.array_lengths.data());
+  call.scratch = aligned(scratch.memory.data());
+  call.cancel = &status.cancel;
+  call.externals = state.externals.data();
+  if (call.count > 0) samples_(&call);
+  report(call, status, 0);
+  if (call.count < count && call.failed_check < 0 && !status.cancel) {
+    run_tail(call, status, call.scratch + arrays, call.count, count - call.count);
+  }
+}
+
+// The last vector repeats the last sample in its spare lanes: they do only what a real lane does as well.
+void CompiledKernel::run_tail(KernelCall call, RunStatus& status, float* buffers, std::int64_t first,
+                              std::int64_t count) const {
+  std::vector<const float*> inputs(is_sample_input_.size());
+  std::vector<float*> outputs(output_count_);
+  float* next = buffers;
+  for (std::size_t i = 0; i < inputs.size(); ++i, next += width_) {
+    if (!is_sample_input_[i] || !call.inputs[i]) continue;
+    for (std::int64_t lane = 0; lane < width_; ++lane) next[lane] = call.inputs[i][first + std::min(lane, count - 1)];
+    inputs[i] = next;
+  }
+  for (std::size_t i = 0; i < outputs.size(); ++i, next += width_) outputs[i] = next;
+  float* const* wanted = call.outputs;
+  call.inputs = inputs.data();
+  call.outputs = outputs.data();
+  call.count = width_;
+  samples_(&call);
+  report(call, status, first);
+  for (std::size_t i = 0; i < outputs.size(); ++i) std::copy_n(outputs[i], count, wanted[i] + first);
+}
+
+}  // namespace pse

@@ -1,0 +1,38 @@
+// Machine code behind the Kernel interface.
+// Made by compile.cpp; run by stream/.
+#pragma once
+
+#include <memory>
+
+#include "codegen/array_layout.h"
+#include "codegen/code_object.h"
+#include "codegen/kernel.h"
+#include "codegen/kernel_call.h"
+
+namespace pse {
+
+class CompiledKernel final : public Kernel {
+ public:
+  // Null where the object lacks an entry point.
+  static std::unique_ptr<CompiledKernel> make(const passes::SplitModule& split, CodeObject code, int width);
+
+  int width() const override { return width_; }
+  void run_frame(FrameState& state, RunStatus& status) const override;
+  void run_samples(const FrameState& state, RunStatus& status, Scratch& scratch, const float* const* inputs,
+                   float* const* outputs, std::int64_t count) const override;
+
+ private:
+  CompiledKernel(const passes::SplitModule& split, CodeObject code, int width);
+  void run_tail(KernelCall call, RunStatus& status, float* buffers, std::int64_t first, std::int64_t count) const;
+
+  CodeObject code_;
+  int width_;
+  std::vector<bool> is_sample_input_;
+  std::size_t output_count_, slot_count_, first_slot_;
+  std::vector<std::int32_t> initial_lengths_;
+  FrameArrayLayout frame_layout_;
+  SampleArrayLayout sample_layout_;
+  KernelEntry samples_ = nullptr, frame_ = nullptr;
+};
+
+}  // namespace pse

@@ -1,0 +1,208 @@
+// Balancing brackets in two passes: the first finds those without a partner and reports them; the second knows them, and
+// ends each unclosed one where the text goes back to its line's indentation.
+#include "lang/layout.h"
+
+#include <algorithm>
+#include <string>
+
+namespace pse::lang {
+
+namespace {
+
+using enum TokenKind;
+
+bool begins_statement(TokenKind kind) {
+  switch (kind) {
+    case kw_function: case kw_if: case kw_else: case kw_elif: case kw_while: case kw_for:
+    case kw_return: case kw_break: case kw_continue: case kw_import: case kw_action:
+      return true;
+    default: return false;
+  }
+}
+
+TokenKind partner(TokenKind kind) {
+  if (kind == left_paren) return right_paren;
+  if (kind == left_bracket) return right_bracket;
+  return right_brace;
+}
+
+class Balancer {
+ public:
+  Balancer(const std::vector<Token>& tokens, const SourceFile& source, FileId file, Diagnostics& diagnostics)
+      : tokens_(tokens), source_(source), file_(file), diagnostics_(diagnostics), unclosed_(tokens.size()) {}
+
+  std::vector<Token> run() {
+    pass();
+    repairing_ = true;
+    pass();
+
+    // Repairs may find another partner for a bracket; an error must be left of them all the same.
+    const auto first = std::find(unclosed_.begin(), unclosed_.end(), true);
+    if (first != unclosed_.end() && !reported_)
+      report_unclosed(tokens_[static_cast<std::size_t>(first - unclosed_.begin())], tokens_.back());
+    return std::move(out_);
+  }
+
+ private:
+  struct Open {
+    std::size_t token = 0;     // the opening bracket
+    std::size_t out = 0;       // its place in the result
+    std::uint32_t indent = 0;  // of its line
+    bool separated = false;    // has a comma or a `..` of its own
+  };
+
+  const std::vector<Token>& tokens_;
+  const SourceFile& source_;
+  FileId file_;
+  Diagnostics& diagnostics_;
+  bool repairing_ = false;      // the second pass
+  bool reported_ = false;       // an opening bracket without partner
+  std::vector<bool> unclosed_;  // by token: an opening bracket without partner
+  std::vector<Open> open_;
+  std::vector<std::size_t> open_unclosed_;  // places in open_ of those that unclosed_ names
+  std::size_t parens_ = 0, brackets_ = 0, braces_ = 0;
+  std::vector<Token> out_;
+
+  std::size_t& count(TokenKind opener) {
+    return opener == left_paren ? parens_ : opener == left_bracket ? brackets_ : braces_;
+  }
+  TokenKind top() const { return tokens_[open_.back().token].kind; }
+  bool in_expression() const { return parens_ + brackets_ > 0; }
+  Span span(const Token& token) const { return {file_, token.begin, token.end}; }
+
+  // ---- One pass over the words ----
+
+  void pass() {
+    open_.clear(), out_.clear(), open_unclosed_.clear();
+    parens_ = brackets_ = braces_ = 0;
+    std::uint32_t indent = 0;
+    for (std::size_t i = 0; i < tokens_.size(); ++i) {
+      const Token& token = tokens_[i];
+      switch (token.kind) {
+        case newline:
+          indent = token.indent;
+          start_line(token, tokens_[i + 1]);
+          break;
+        case left_paren: case left_bracket: open(i, indent); break;
+        case left_brace:
+          while (in_expression()) close_missing(token);
+          open(i, indent);
+          break;
+        case right_paren: close(token, left_paren); break;
+        case right_bracket: close(token, left_bracket); break;
+        case right_brace:
+          while (in_expression()) close_missing(token);
+          close(token, left_brace);
+          break;
+        case end:
+          while (!open_.empty()) close_missing(token);
+          out_.push_back(token);
+          break;
+        case comma: case dot_dot:
+          if (!open_.empty()) open_.back().separated = true;
+          [[fallthrough]];
+        default: out_.push_back(token);
+      }
+    }
+  }
+
+  void start_line(const Token& token, const Token& next) {
+    // An unclosed bracket ends where its line's indentation comes back.
+    while (!open_unclosed_.empty() && open_[open_unclosed_.back()].indent >= token.indent && next.kind != right_brace) {
+      const std::size_t depth = open_unclosed_.back();
+      while (open_.size() > depth) close_missing(token);
+    }
+    // Words that only begin statements end every expression.
+    if (begins_statement(next.kind))
+      while (in_expression()) close_missing(token);
+    if (!in_expression()) out_.push_back(token);
+  }
+
+  void open(std::size_t i, std::uint32_t indent) {
+    if (unclosed_[i]) open_unclosed_.push_back(open_.size());
+    open_.push_back({i, out_.size(), indent});
+    ++count(tokens_[i].kind);
+    out_.push_back(tokens_[i]);
+  }
+
+  void close(const Token& token, TokenKind opener) {
+    if (count(opener) == 0) {
+      if (!repairing_) report_stray(token);
+      // `(a]`: taken for the bracket that was meant.
+      if (in_expression() && opener != left_brace) close_as(partner(top()), token);
+      return;
+    }
+    while (top() != opener) close_missing(token);
+    close_as(token.kind, token);
+  }
+
+  // The innermost bracket gets its end.
+  void close_as(TokenKind kind, Token token) {
+    pop();
+    token.kind = kind;
+    out_.push_back(token);
+  }
+
+  // The innermost bracket has no end in the text; one is put in behind the last word, before `before`.
+  void close_missing(const Token& before) {
+    const std::size_t opener = open_.back().token;
+    if (!repairing_)
+      unclosed_[opener] = true;
+    else if (unclosed_[opener])
+      report_unclosed(tokens_[opener], before);
+    const std::uint32_t at = out_.back().end;
+    const TokenKind kind = partner(top());
+    pop();
+    out_.push_back({.kind = kind, .made_up = true, .begin = at, .end = at});
+  }
+
+  void pop() {
+    const Open& opened = open_.back();
+    if (top() == left_bracket) out_[opened.out].juxtaposed = !opened.separated;
+    if (!open_unclosed_.empty() && open_unclosed_.back() == open_.size() - 1) open_unclosed_.pop_back();
+    --count(top());
+    open_.pop_back();
+  }
+
+  // ---- Reports ----
+
+  std::string line_of(const Token& token) const { return std::to_string(source_.position(token.begin).line); }
+
+  void report_unclosed(const Token& opener, const Token& before) {
+    reported_ = true;
+    std::string help = "add " + std::string(describe(partner(opener.kind)));
+    if (before.kind == end)
+      help += " after it";
+    else if (line_of(before) == line_of(opener))
+      help += " before " + std::string(describe(before.kind));
+    else if (before.kind == newline && source_.position(out_.back().end).line == source_.position(opener.begin).line)
+      help += " on this line";
+    else
+      help += " before line " + line_of(before);
+    diagnostics_.add({Severity::error, "unclosed-bracket",
+                      std::string(describe(opener.kind)) + " is never closed", span(opener),
+                      std::string(describe(partner(opener.kind))), help});
+  }
+
+  void report_stray(const Token& token) {
+    if (in_expression() && token.kind != right_brace) {
+      const Token& opener = tokens_[open_.back().token];
+      diagnostics_.add({Severity::error, "wrong-bracket",
+                        std::string(describe(token.kind)) + " cannot close the " + std::string(describe(opener.kind)) +
+                            " of line " + line_of(opener),
+                        span(token), std::string(describe(partner(opener.kind))), {}});
+    } else {
+      diagnostics_.error("stray-bracket", span(token), std::string(describe(token.kind)) + " closes nothing",
+                         "remove it, or open the bracket before it");
+    }
+  }
+};
+
+}  // namespace
+
+std::vector<Token> lay_out(const std::vector<Token>& tokens, const SourceFile& source, FileId file,
+                           Diagnostics& diagnostics) {
+  return Balancer(tokens, source, file, diagnostics).run();
+}
+
+}  // namespace pse::lang

@@ -188,6 +188,7 @@ struct FunctionStmt {
   Span name_span;
   std::vector<Parameter> parameters;
   Block body;
+  Span head;  // from `function` to the `)`
 };
 
 // `import name` or `import name as alias`: the module `name.pse`, beside this file or on PSE_PATH.

@@ -284,6 +284,7 @@ StmtPtr Parser::function_statement(const Layout& layout) {
     understood = parameters(node.parameters);
   }
   if (!understood) skip_head();
+  node.head = since(begin);
   const Restore outside(in_action_, false);
   node.body = body(layout, "function");
   return make_statement(begin, std::move(node));

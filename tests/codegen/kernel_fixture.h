@@ -133,11 +133,10 @@ inline Columns run(const TestProgram& program, const Machine& machine, const Col
 
 class OnEveryMachine : public ::testing::TestWithParam<Machine> {};
 
-}  // namespace pse::testing_support
+inline std::string machine_name(const ::testing::TestParamInfo<Machine>& info) {
+  std::string name = info.param.cpu + "_x" + std::to_string(info.param.width);
+  for (char& c : name) c = c == '-' ? '_' : c;
+  return name;
+}
 
-#define PSE_ON_EVERY_MACHINE                                                                    \
-  INSTANTIATE_TEST_SUITE_P(All, OnEveryMachine, ::testing::ValuesIn(all_machines()), [](const auto& param_info) { \
-    std::string name = param_info.param.cpu + "_x" + std::to_string(param_info.param.width);    \
-    for (char& c : name) c = c == '-' ? '_' : c;                                                \
-    return name;                                                                                \
-  })
+}  // namespace pse::testing_support

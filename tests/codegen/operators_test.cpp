@@ -6,6 +6,8 @@ namespace {
 
 using ir::Op;
 
+class Operator : public OnEveryMachine {};
+
 constexpr std::uint32_t inf = 0x7f800000u, minus_inf = 0xff800000u, nan1 = 0x7fc00000u, zero = 0, minus_zero = 0x80000000u;
 constexpr std::uint32_t tiny = 1, one = 0x3f800000u, minus_one = 0xbf800000u, huge = 0x7f7fffffu;
 std::uint32_t f(float value) { return bits(value); }
@@ -185,13 +187,6 @@ void emit_case(TestProgram& program, Op op, ir::Rate rate) {
   if (letter == 'f') program.output(result);
   if (letter == 'i') program.output_int(result);
   if (letter == 'b') program.output_bool(result);
-  program.finish();
-}
-
-std::uint32_t result_of(const Columns& out, char letter, std::size_t sample) {
-  if (letter == 'f') return bits(out[0][sample]);
-  if (letter == 'b') return out[0][sample] != 0 ? 1 : 0;
-  return static_cast<std::uint32_t>(out[0][sample]) << 16 | static_cast<std::uint32_t>(out[1][sample]);
 }
 
 std::vector<Case> cases_of(Op op) {
@@ -202,43 +197,67 @@ std::vector<Case> cases_of(Op op) {
   return result;
 }
 
-TEST_P(OnEveryMachine, OperatorsGiveTheTablesBits) {
-  for (const ir::OpInfo& info : ir::op_table()) {
-    const std::vector<Case> these = cases_of(info.op);
-    if (these.empty()) continue;
-    TestProgram program;
-    emit_case(program, info.op, ir::Rate::sample);
-    Columns columns(program.split.module.inputs.size());
-    for (const Case& c : these) {
-      std::vector<float> row;
-      for (std::size_t i = 0; i < c.operands.size(); ++i) append(row, info.operands[i], c.operands[i]);
-      for (std::size_t i = 0; i < row.size(); ++i) columns[i].push_back(row[i]);
+// One program with all operators; operator by operator, sample i computes case i.
+struct AllOperators {
+  TestProgram program;
+  Columns columns;
+  std::size_t longest = 0;
+
+  explicit AllOperators(ir::Rate rate) {
+    for (const ir::OpInfo& info : ir::op_table()) {
+      const std::vector<Case> these = cases_of(info.op);
+      if (these.empty()) continue;
+      const std::size_t first = program.split.module.inputs.size();
+      emit_case(program, info.op, rate);
+      columns.resize(program.split.module.inputs.size());
+      for (const Case& c : these) {
+        std::vector<float> row;
+        for (std::size_t i = 0; i < c.operands.size(); ++i) append(row, info.operands[i], c.operands[i]);
+        for (std::size_t i = 0; i < row.size(); ++i) columns[first + i].push_back(row[i]);
+      }
+      longest = std::max(longest, these.size());
     }
-    const Columns out = run(program, GetParam(), columns, static_cast<std::int64_t>(these.size()));
-    for (std::size_t i = 0; i < these.size(); ++i) {
-      EXPECT_EQ(result_of(out, info.results.front(), i), these[i].result) << info.name << " case " << i;
+    for (auto& column : columns) column.resize(longest);
+    program.finish();
+  }
+
+  void expect_case(const Columns& out, std::size_t sample, std::size_t number) const {
+    std::size_t column = 0;
+    for (const ir::OpInfo& info : ir::op_table()) {
+      const std::vector<Case> these = cases_of(info.op);
+      if (these.empty()) continue;
+      const char letter = info.results.front();
+      std::uint32_t result = bits(out[column][sample]);
+      if (letter == 'b') result = out[column][sample] != 0 ? 1 : 0;
+      if (letter == 'i') {
+        result = static_cast<std::uint32_t>(out[column][sample]) << 16;
+        result |= static_cast<std::uint32_t>(out[++column][sample]);
+      }
+      ++column;
+      if (number < these.size()) {
+        EXPECT_EQ(result, these[number].result) << info.name << " case " << number;
+      }
     }
   }
+};
+
+TEST_P(Operator, GivesTheTablesBits) {
+  const AllOperators all(ir::Rate::sample);
+  const Columns out = run(all.program, GetParam(), all.columns, static_cast<std::int64_t>(all.longest));
+  for (std::size_t i = 0; i < all.longest; ++i) all.expect_case(out, i, i);
 }
 
 // The same with operands that hold for a frame: the operator then works on scalars.
-TEST_P(OnEveryMachine, UniformOperatorsGiveTheTablesBits) {
-  for (const ir::OpInfo& info : ir::op_table()) {
-    const std::vector<Case> these = cases_of(info.op);
-    if (these.empty()) continue;
-    TestProgram program;
-    emit_case(program, info.op, ir::Rate::frame);
-    const auto kernel = compile(program, GetParam());
-    ASSERT_TRUE(kernel);
-    for (std::size_t i = 0; i < these.size(); ++i) {
-      std::vector<float> uniforms;
-      for (std::size_t k = 0; k < these[i].operands.size(); ++k) append(uniforms, info.operands[k], these[i].operands[k]);
-      Runner once;
-      const Columns out = once(*kernel, program.split.module, uniforms, {}, 3);
-      for (std::size_t s = 0; s < 3; ++s) {
-        EXPECT_EQ(result_of(out, info.results.front(), s), these[i].result) << info.name << " case " << i;
-      }
-    }
+TEST_P(Operator, GivesTheTablesBitsForUniformValues) {
+  const AllOperators all(ir::Rate::frame);
+  const auto kernel = compile(all.program, GetParam());
+  ASSERT_TRUE(kernel);
+  for (std::size_t i = 0; i < all.longest; ++i) {
+    std::vector<float> uniforms;
+    for (const auto& column : all.columns) uniforms.push_back(column[i]);
+    Runner once;
+    const Columns out = once(*kernel, all.program.split.module, uniforms, {}, 3);
+    for (std::size_t sample = 0; sample < 3; ++sample) all.expect_case(out, sample, i);
   }
 }
 
@@ -249,7 +268,7 @@ TEST(Operators, EveryOneOfTheTableIsTested) {
   }
 }
 
-TEST_P(OnEveryMachine, SelectComputesBothAndChooses) {
+TEST_P(Operator, SelectComputesBothAndChooses) {
   TestProgram program;
   ir::Builder& b = program.build;
   const ir::Value x = program.input(), y = program.input();
@@ -260,7 +279,7 @@ TEST_P(OnEveryMachine, SelectComputesBothAndChooses) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(bits(out[0][i]), bits(expected[i]));
 }
 
-TEST_P(OnEveryMachine, OutputsStoreTheOneNaN) {
+TEST_P(Operator, OutputsStoreTheOneNaN) {
   TestProgram program;
   program.output(program.input());
   program.output(program.build.const_f32(from_bits(0xffc00001u)));
@@ -273,7 +292,7 @@ TEST_P(OnEveryMachine, OutputsStoreTheOneNaN) {
 }
 
 // a * b + c as two operators is rounded twice, whatever the processor has.
-TEST_P(OnEveryMachine, NothingIsContracted) {
+TEST_P(Operator, NothingIsContracted) {
   TestProgram program;
   ir::Builder& b = program.build;
   const ir::Value x = program.input(), y = program.input(), z = program.input();
@@ -284,7 +303,7 @@ TEST_P(OnEveryMachine, NothingIsContracted) {
   EXPECT_EQ(out[0][0], 0.0f);
 }
 
-PSE_ON_EVERY_MACHINE;
+INSTANTIATE_TEST_SUITE_P(All, Operator, ::testing::ValuesIn(all_machines()), machine_name);
 
 }  // namespace
 }  // namespace pse::testing_support

@@ -188,7 +188,6 @@ void FunctionEmitter::emit_sample_loop(const std::vector<ir::Output>& outputs) {
 void FunctionEmitter::emit_once() {
   load_inputs();
   declare_arrays();
-  clear_arrays();
   emit_region(function_.body);
   if (!function_.body.yields.empty()) {
     llvm::Value* slots = b_.CreateLoad(ptr_, call_field(offsetof(KernelCall, outputs), ptr_));

@@ -1,0 +1,40 @@
+// libFuzzer: any bytes as a program. The front end must refuse or accept them without a crash or a hang; what it
+// accepts must format to a text that parses, and formatting twice must change nothing more.
+#include <cstdint>
+#include <cstdlib>
+
+#include "lang/parser.h"
+
+namespace {
+
+struct Parsed {
+  pse::SourceMap sources;
+  pse::Diagnostics diagnostics;
+  pse::lang::Program program;
+};
+
+void parse(Parsed& parsed, std::string text) {
+  const pse::FileId file = parsed.sources.add("input", std::move(text));
+  parsed.program = pse::lang::parse(parsed.sources, file, parsed.diagnostics);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  Parsed first;
+  parse(first, std::string(reinterpret_cast<const char*>(data), size));
+  first.diagnostics.sort();
+  pse::print_text(first.diagnostics, first.sources, false);
+  pse::print_json(first.diagnostics, first.sources);
+  pse::lang::print_tokens(first.sources, first.program.file);
+  if (first.diagnostics.has_errors()) return 0;
+
+  // What was accepted: print it, and format it twice.
+  pse::lang::print_ast(first.program);
+  const std::string formatted = pse::lang::format(first.program, first.sources);
+  Parsed second;
+  parse(second, formatted);
+  if (second.diagnostics.has_errors()) std::abort();
+  if (pse::lang::format(second.program, second.sources) != formatted) std::abort();
+  return 0;
+}

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <string>
 #include <vector>
 
@@ -107,8 +106,7 @@ struct External {
 };
 
 struct Module {
-  // functions[entry] is the program; the others are called. A deque: a Function stays where it is while others are added.
-  std::deque<Function> functions;
+  std::vector<Function> functions;  // functions[entry] is the program; the others are called
   std::uint32_t entry = 0;
   std::vector<FloatTable> float_tables;
   std::vector<IntTable> int_tables;

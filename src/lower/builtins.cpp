@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <stdexcept>
 
 #include "lower/builtin_table.h"
 
@@ -178,6 +179,9 @@ std::vector<IrFloat> BuiltinScope::call(std::string_view key, std::span<const Ir
   auto found = emitter_->functions_.find(key);
   if (found == emitter_->functions_.end()) {
     // Write the function: parameters, body, results.
+    if (module.functions.size() == module.functions.capacity()) {
+      throw std::logic_error("no room was reserved for builtins in ir::Module::functions");
+    }
     const auto index = static_cast<std::int32_t>(module.functions.size());
     ir::Function& function = module.functions.emplace_back();
     function.name = key;

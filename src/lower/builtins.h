@@ -50,9 +50,11 @@ struct BuiltinCall {
 };
 
 // Emits calls of builtins into functions of one module. Large bodies are emitted once, as functions of the module that
-// Op::call calls; small ones stand where they are used. A Builder may be alive while functions are added.
+// Op::call calls; small ones stand where they are used. A Builder keeps a reference into module.functions, so the host
+// reserves room for `room_for_builtins` more before it makes one.
 class BuiltinEmitter {
  public:
+  static constexpr std::size_t room_for_builtins = 1024;
   explicit BuiltinEmitter(ir::Module& module) : module_(&module) {}
 
   // The components of the result, or what is wrong with the call, as one sentence without its full stop.

@@ -22,6 +22,7 @@ struct BuiltinProgram {
 
   BuiltinProgram(const std::string& name, const Vectors& arguments,
                  const std::vector<std::pair<std::string, std::vector<float>>>& named = {}) {
+    module.functions.reserve(1 + BuiltinEmitter::room_for_builtins);
     ir::Builder builder(module, module.functions.emplace_back());
     const auto place = [&](const std::vector<float>& numbers) {
       Components components;

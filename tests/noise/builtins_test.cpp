@@ -55,6 +55,7 @@ TEST(Builtins, SaysWhatIsWrong) {
 
 TEST(Builtins, LargeBodiesAreWrittenOnce) {
   ir::Module module;
+  module.functions.reserve(1 + BuiltinEmitter::room_for_builtins);
   ir::Builder builder(module, module.functions.emplace_back());
   BuiltinEmitter emitter(module);
   const Components point(3, builder.const_f32(0.5f));

@@ -25,6 +25,9 @@ class Diagnostics {
   // At most this many errors, and as many warnings, are kept; further errors are only counted.
   static constexpr std::size_t limit = 100;
 
+  // With this many errors a text is no program: stages stop looking for more.
+  static constexpr std::size_t give_up = 1000;
+
   void add(Diagnostic diagnostic);
   void error(std::string code, Span span, std::string message, std::string suggestion = {});
   void warning(std::string code, Span span, std::string message, std::string suggestion = {});

@@ -19,6 +19,11 @@ bool is_simple(const Stmt& statement) {
          std::holds_alternative<ImportStmt>(statement.node);
 }
 
+bool begins_with_keyword(const Stmt& statement) {
+  return std::holds_alternative<ReturnStmt>(statement.node) || std::holds_alternative<BreakStmt>(statement.node) ||
+         std::holds_alternative<ContinueStmt>(statement.node);
+}
+
 class Formatter {
  public:
   Formatter(const Program& program, const SourceFile& source)
@@ -308,11 +313,13 @@ class Formatter {
     }
     out_ += block.braces ? " }" : "";
 
-    // `if (a) b = 1` needs no colon; `if a: b = 1` reads better with one, and `if (a): (b)` would be a call without.
+    // `if (a) b = 1` and `if a return b` need no colon; `if a: b = 1` reads better with one, and `if (a): -b` would be a
+    // difference without.
     const std::string_view text = std::string_view(out_).substr(size);
     const char first = text.size() > 1 ? text[1] : '(';
     const bool letter = (first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z') || first == '_';
-    if (!block.braces && (!closed || !letter || text.starts_with(" then"))) out_.insert(size, ":");
+    const bool plain = block.size() == 1 && begins_with_keyword(*block[0]);
+    if (!block.braces && !plain && (!closed || !letter || text.starts_with(" then"))) out_.insert(size, ":");
     const bool broken = out_.find('\n', size) != std::string::npos;
     if (last_line_width(out_) <= format_width && !broken) return true;
     out_.resize(size);

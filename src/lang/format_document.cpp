@@ -8,6 +8,7 @@ namespace pse::lang {
 namespace {
 
 constexpr std::size_t step = 4;
+constexpr std::size_t shortest = 25;  // a narrower group stays whole: broken, it reads worse than a line too long
 
 std::string trimmed(std::string text) {
   while (!text.empty() && text.back() == ' ') text.pop_back();
@@ -35,10 +36,41 @@ std::size_t fixed_width(const std::vector<Document>& parts, std::size_t first, s
   return width + after;
 }
 
+// Whether a document ends in a bracketed group and has none before it, as `[...]` and `f(...)`.
+const Document* only_group(const Document& document) {
+  if (document.kind == Document::Kind::group) return &document;
+  if (document.kind != Document::Kind::row || document.parts.empty()) return nullptr;
+  for (std::size_t i = 0; i + 1 < document.parts.size(); ++i)
+    if (document.parts[i].kind != Document::Kind::text) return nullptr;
+  return only_group(document.parts.back());
+}
+
+// `f(a, [`, the last part's lines, `])`: where all but the last part of a call fits on the line, only that is broken.
+bool break_last_part(const Document& group, std::size_t indent, std::size_t limit, std::size_t after, std::string& out) {
+  if (group.open != "(" || group.parts.empty()) return false;
+  const Document& last = group.parts.back();
+  const Document* inner = only_group(last);
+  if (inner == nullptr || inner->parts.empty()) return false;
+  std::size_t inner_width = inner->close.size();
+  for (const Document& part : inner->parts) inner_width += part.width + inner->separator.size();
+  const std::size_t head = group.width > inner_width ? group.width - inner_width : group.width;
+  if (last_line_width(out) + head > limit) return false;
+
+  out += group.open;
+  for (std::size_t i = 0; i + 1 < group.parts.size(); ++i) {
+    render_flat(group.parts[i], out);
+    out += group.separator;
+  }
+  render(last, indent, limit, after + group.close.size(), out);
+  out += group.close;
+  return true;
+}
+
 void break_group(const Document& group, std::size_t indent, std::size_t limit, std::size_t after, std::string& out) {
+  if (break_last_part(group, indent, limit, after, out)) return;
   const std::size_t inner = indent + step;
   const std::string separator = trimmed(group.separator);
-  out += group.open;
+  out += trimmed(group.open);
   std::size_t column = limit + 1;  // a new line first
   for (std::size_t i = 0; i < group.parts.size(); ++i) {
     const Document& part = group.parts[i];
@@ -56,8 +88,7 @@ void break_group(const Document& group, std::size_t indent, std::size_t limit, s
   }
   out += '\n';
   out.append(indent, ' ');
-  out += group.close;
-  (void)after;
+  out += group.close.substr(group.close.find_first_not_of(' '));
 }
 
 }  // namespace
@@ -116,7 +147,7 @@ void render(const Document& document, std::size_t indent, std::size_t limit, std
   const bool fits = last_line_width(out) + document.width + after <= limit;
   if (fits || document.kind == Document::Kind::text) return render_flat(document, out);
   if (document.kind == Document::Kind::group) {
-    if (document.parts.empty()) return render_flat(document, out);
+    if (document.parts.empty() || document.width < shortest) return render_flat(document, out);
     return break_group(document, indent, limit, after, out);
   }
   for (std::size_t i = 0; i < document.parts.size(); ++i)

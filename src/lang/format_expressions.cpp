@@ -1,4 +1,4 @@
-// Expressions in pse's one layout: a space on both sides of an operator but `^`, commas where the program has them.
+// Expressions in pse's one layout: a space on both sides of an operator, commas where the program has them.
 #include <array>
 
 #include "lang/format_state.h"
@@ -7,7 +7,7 @@ namespace pse::lang {
 
 namespace {
 
-constexpr std::array binary_spellings = {" + ", " - ", " * ", " / ", " % ", "^",  " < ",
+constexpr std::array binary_spellings = {" + ", " - ", " * ", " / ", " % ", " ^ ", " < ",
                                          " <= ", " > ", " >= ", " == ", " != ", " and ", " or "};
 
 // A text in straight double quotes.

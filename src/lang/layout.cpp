@@ -170,6 +170,7 @@ class Balancer {
 
   void report_unclosed(const Token& opener, const Token& before) {
     reported_ = true;
+    if (diagnostics_.error_count() >= Diagnostics::give_up) return;
     std::string help = "add " + std::string(describe(partner(opener.kind)));
     if (before.kind == end)
       help += " after it";
@@ -185,6 +186,7 @@ class Balancer {
   }
 
   void report_stray(const Token& token) {
+    if (diagnostics_.error_count() >= Diagnostics::give_up) return;
     if (in_expression() && token.kind != right_brace) {
       const Token& opener = tokens_[open_.back().token];
       diagnostics_.add({Severity::error, "wrong-bracket",

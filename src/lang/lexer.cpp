@@ -86,7 +86,7 @@ class Scanner {
 
   TokenList run() {
     if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;
-    while (at_ < text_.size()) {
+    while (at_ < text_.size() && !given_up()) {
       if (skip_space()) continue;
       if (skip_comment()) continue;
       start_line();
@@ -94,8 +94,8 @@ class Scanner {
       space_ = false;
     }
     list_.tokens.push_back({.kind = TokenKind::end,
-                            .begin = static_cast<std::uint32_t>(text_.size()),
-                            .end = static_cast<std::uint32_t>(text_.size())});
+                            .begin = static_cast<std::uint32_t>(at_),
+                            .end = static_cast<std::uint32_t>(at_)});
     return std::move(list_);
   }
 
@@ -110,6 +110,14 @@ class Scanner {
   bool space_ = true;           // white space before what comes next
   bool tab_ = false, blank_before_tab_ = false, blank_ = false;
   bool open_comment_ = true;    // a `*/` may still follow
+
+  // Whether the text is too wrong, or too long, to be read to its end.
+  bool given_up() {
+    if (list_.tokens.size() <= max_words) return diagnostics_.error_count() >= Diagnostics::give_up;
+    diagnostics_.error("program-too-large", span(at_, at_), "the program has more than " + std::to_string(max_words) + " words",
+                       "divide it into modules");
+    return true;
+  }
 
   bool starts(std::string_view word) const { return text_.substr(at_).starts_with(word); }
   char peek(std::size_t ahead = 0) const {

@@ -54,7 +54,7 @@ std::string Parser::quote(const Span& place) const {
 // ---- Errors and limits ------------------------------------------------------------------------------------------
 
 void Parser::report(std::string code, Span place, std::string message, std::string expected, std::string suggestion) {
-  if (stopped_) return;
+  if (stopped_ || diagnostics_.error_count() >= Diagnostics::give_up) return;
   diagnostics_.add({Severity::error, std::move(code), std::move(message), place, std::move(expected),
                     std::move(suggestion)});
 }

@@ -48,7 +48,8 @@ void utf8_append(std::string& text, char32_t code) {
 
 std::size_t utf8_count(std::string_view text) {
   std::size_t count = 0;
-  for (std::size_t at = 0; at < text.size(); ++count) at += utf8_decode(text, at).length;
+  for (std::size_t at = 0; at < text.size(); ++count)
+    at += static_cast<unsigned char>(text[at]) < 0x80 ? 1 : utf8_decode(text, at).length;
   return count;
 }
 

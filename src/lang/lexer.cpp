@@ -21,6 +21,13 @@ struct Spelling {
   TokenKind kind;
 };
 
+constexpr auto brackets = std::to_array<Spelling>({
+    {"(", TokenKind::left_paren},   {")", TokenKind::right_paren},
+    {"[", TokenKind::left_bracket}, {"]", TokenKind::right_bracket},
+    {"{", TokenKind::left_brace},   {"}", TokenKind::right_brace},
+    {",", TokenKind::comma},        {";", TokenKind::semicolon},
+});
+
 // Longest first.
 constexpr auto spellings = std::to_array<Spelling>({
     {"**=", TokenKind::power_assign}, {"==", TokenKind::equal},
@@ -30,10 +37,6 @@ constexpr auto spellings = std::to_array<Spelling>({
     {"+=", TokenKind::plus_assign},   {"-=", TokenKind::minus_assign},
     {"*=", TokenKind::star_assign},   {"/=", TokenKind::slash_assign},
     {"^=", TokenKind::power_assign},  {"..", TokenKind::dot_dot},
-    {"(", TokenKind::left_paren},     {")", TokenKind::right_paren},
-    {"[", TokenKind::left_bracket},   {"]", TokenKind::right_bracket},
-    {"{", TokenKind::left_brace},     {"}", TokenKind::right_brace},
-    {",", TokenKind::comma},          {";", TokenKind::semicolon},
     {":", TokenKind::colon},          {"?", TokenKind::question},
     {".", TokenKind::dot},            {"+", TokenKind::plus},
     {"-", TokenKind::minus},          {"*", TokenKind::star},
@@ -292,6 +295,14 @@ class Scanner {
   }
 
   void scan_symbol() {
+    // Brackets and separators, which begin nothing longer.
+    for (const Spelling& bracket : brackets) {
+      if (peek() != bracket.text[0]) continue;
+      emit(bracket.kind, at_, at_ + 1);
+      ++at_;
+      return;
+    }
+
     // Foreign spellings first: they contain the known ones. `=>` is not met in `a=>b` by accident.
     for (const Lookalike& lookalike : lookalikes) {
       if (!starts(lookalike.text)) continue;

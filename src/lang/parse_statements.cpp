@@ -73,8 +73,6 @@ constexpr auto foreign_words = std::to_array<Foreign>({
 }  // namespace
 
 StmtPtr Parser::statement(const Layout& layout) {
-  const Level level(*this);
-  if (!level) return nullptr;
   const std::uint32_t begin = peek().begin;
   switch (peek().kind) {
     case kw_if: return if_statement(layout);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "ir/ops.h"
+#include "ir/module.h"
 
 namespace pse::ir {
 
@@ -81,6 +81,24 @@ inline Bits evaluate(Op op, Bits a, Bits b, Bits c) {
     case Op::bits2f: return a;
     default: return 0;
   }
+}
+
+// The result of table_f32, table_i32, bytes_add or bytes_lookup.
+inline Bits evaluate_table(const Module& module, Op op, std::int32_t table, Bits a, Bits b) {
+  const auto index = static_cast<std::size_t>(table);
+  if (op == Op::bytes_add) return evaluate_bytes_add(a, b);
+  if (op == Op::table_f32) {
+    const auto& entries = module.float_tables[index].entries;
+    return to_bits(entries[a & (entries.size() - 1)]);
+  }
+  if (op == Op::table_i32) {
+    const auto& entries = module.int_tables[index].entries;
+    return static_cast<Bits>(entries[a & (entries.size() - 1)]);
+  }
+  const auto& entries = module.byte_tables[index].entries;
+  Bits found = 0;
+  for (unsigned shift = 0; shift < 32; shift += 8) found |= Bits{entries[(a >> shift) & 255]} << shift;
+  return found;
 }
 
 }  // namespace pse::ir

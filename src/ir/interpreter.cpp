@@ -82,25 +82,12 @@ bool Interpreter::run_instruction(const Instruction& in, Frame& frame) {
     case Op::const_i32: frame[in.result()] = static_cast<Bits>(in.imm); return true;
     case Op::const_bool: frame[in.result()] = in.imm != 0; return true;
     case Op::input: frame[in.result()] = to_bits(environment_->inputs[index]); return true;
-    case Op::table_f32: {
-      const auto& entries = module_->float_tables[index].entries;
-      frame[in.result()] = to_bits(entries[frame[in.operands[0]] & (entries.size() - 1)]);
-      return true;
-    }
-    case Op::table_i32: {
-      const auto& entries = module_->int_tables[index].entries;
-      frame[in.result()] = static_cast<Bits>(entries[frame[in.operands[0]] & (entries.size() - 1)]);
-      return true;
-    }
+    case Op::table_f32:
+    case Op::table_i32:
     case Op::bytes_add:
-      frame[in.result()] = evaluate_bytes_add(frame[in.operands[0]], frame[in.operands[1]]);
-      return true;
     case Op::bytes_lookup: {
-      const auto& entries = module_->byte_tables[index].entries;
-      const Bits a = frame[in.operands[0]];
-      Bits found = 0;
-      for (unsigned shift = 0; shift < 32; shift += 8) found |= Bits{entries[(a >> shift) & 255]} << shift;
-      frame[in.result()] = found;
+      const Bits second = in.operands.size() > 1 ? frame[in.operands[1]] : 0;
+      frame[in.result()] = evaluate_table(*module_, in.op, in.imm, frame[in.operands[0]], second);
       return true;
     }
     case Op::array_load: {

@@ -3,19 +3,41 @@
 
 #include <utility>
 
+#include "passes/passes.h"
+
 namespace pse::passes {
 
 SplitModule run_pipeline(ir::Module module, const PipelineOptions& options) {
-  SplitModule split;
-  split.first_slot = static_cast<std::uint32_t>(module.inputs.size());
-  split.frame = static_cast<std::uint32_t>(module.functions.size());
-  ir::Function frame;
-  frame.name = "frame";
-  frame.arrays = module.main().arrays;
-  module.functions.push_back(std::move(frame));
-  split.module = std::move(module);
-  if (options.after_pass) options.after_pass("split", split.module);
-  return split;
+  const auto after = [&](std::string_view pass, const ir::Module& result) {
+    if (options.after_pass) options.after_pass(pass, result);
+  };
+  const auto run = [&](std::string_view name, auto&& pass, ir::Module& on) {
+    pass(on);
+    after(name, on);
+  };
+
+  if (options.optimize) {
+    // What the program does not need, and what it calls.
+    run("remove-dead", [](ir::Module& m) { remove_dead(m); }, module);
+    run("inline", [](ir::Module& m) { inline_calls(m); }, module);
+    // Twice: selects made from ifs, and loops that fell away, show new constants.
+    for (int round = 0; round < 2; ++round) {
+      run("fold", fold, module);
+      run("share", share, module);
+      run("simplify-loops", simplify_loops, module);
+      run("convert-ifs", [](ir::Module& m) { convert_ifs(m); }, module);
+    }
+    run("fold", fold, module);
+    run("hoist", hoist, module);
+    run("share", share, module);
+    run("remove-dead", [](ir::Module& m) { remove_dead(m); }, module);
+    // Whose work it is: the frame's or the sample's.
+    run("rates", [](ir::Module& m) { assign_rates(m); }, module);
+    run("hoist-frame", hoist_frame, module);
+  }
+  SplitModule result = split(std::move(module));
+  after("split", result.module);
+  return result;
 }
 
 }  // namespace pse::passes

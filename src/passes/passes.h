@@ -1,0 +1,57 @@
+// The passes, one per file. Each keeps a module's meaning bit for bit and takes time near linear in its size.
+#pragma once
+
+#include <cstdint>
+
+#include "ir/module.h"
+#include "passes/pipeline.h"
+
+namespace pse::passes {
+
+// inline_calls.cpp: copies called functions into their callers.
+struct InlineOptions {
+  std::size_t small = 40;            // functions up to this many instructions, always
+  std::size_t single = 1u << 20;     // functions with one call site, up to this many
+  std::size_t max_total = 600'000;   // no more once the module has this many
+};
+void inline_calls(ir::Module& module, const InlineOptions& options = {});
+
+// fold.cpp: constants, identities that are exact, conditions that are known, calls of constants.
+void fold(ir::Module& module);
+
+// share.cpp: what was computed already is not computed again.
+void share(ir::Module& module);
+
+// simplify_loops.cpp: loops that never turn, and what they carry without changing it.
+void simplify_loops(ir::Module& module);
+
+// convert_ifs.cpp: small ifs without effects become selects.
+struct ConvertOptions {
+  int max_cost = 24;  // of both sides together, in additions
+};
+void convert_ifs(ir::Module& module, const ConvertOptions& options = {});
+
+// hoist.cpp: what does not change within a loop is computed before it.
+void hoist(ir::Module& module);
+
+// remove_dead.cpp: instructions, loop parameters, arrays and functions that nothing observes.
+struct DeadOptions {
+  bool arrays = true;     // off: arrays keep their numbers
+  bool functions = true;  // likewise functions
+};
+void remove_dead(ir::Module& module, const DeadOptions& options = {});
+
+// rates.cpp: gives every value and array of a function its rate. Arrays marked in `of_sample` are of rate sample, and
+// all that are written under control or with values of rate sample become so and are marked.
+void assign_rates(const ir::Module& module, ir::Function& function, std::vector<bool>& of_sample);
+void assign_rates(ir::Module& module);
+
+// hoist_frame.cpp: cheap work of rate frame leaves the ifs and loops of rate sample around it. Needs rates.
+void hoist_frame(ir::Module& module);
+
+// split.cpp: cuts the program into what is done per frame and per sample.
+SplitModule split(ir::Module module);
+// Everything to the sample: what a program means without the cut.
+SplitModule split_nothing(ir::Module module);
+
+}  // namespace pse::passes

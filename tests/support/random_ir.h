@@ -113,7 +113,7 @@ class RandomIr {
       const int arrays = dice_.below(4);
       for (int i = 0; i < arrays; ++i) {
         ir::Array array{.name = "a" + std::to_string(i), .components = 1 + dice_.below(3), .capacity = dice_.below(10)};
-        array.initial_length = dice_.one_in(2) ? dice_.below(array.capacity + 1) : 0;
+        array.initial_length = dice_.one_in(3) ? 0 : dice_.below(array.capacity + 1);
         function.arrays.push_back(array);
       }
     }
@@ -126,10 +126,11 @@ class RandomIr {
         add(builder.add_param(function.body, type), type);
       }
     }
+    if (entry) start_with_inputs();
     fill(options_.instructions / 2 + dice_.below(options_.instructions), 0);
-    const int yields = 1 + dice_.below(entry ? 5 : 3);
+    const int yields = 1 + dice_.below(entry ? 20 : 3);
     std::vector<ir::Value> results;
-    for (int i = 0; i < yields; ++i) results.push_back(any(entry ? Type::f32 : random_type()));
+    for (int i = 0; i < yields; ++i) results.push_back(entry ? observed() : any(random_type()));
     function.body.yields = results;
     module_.functions.push_back(std::move(function));
   }
@@ -153,14 +154,43 @@ class RandomIr {
   // A value of this type: a recent one, any one, or a fresh constant.
   ir::Value any(Type type) {
     const auto& values = pool_[static_cast<std::size_t>(type)];
-    if (values.empty() || dice_.one_in(8)) {
+    if (values.empty() || dice_.one_in(10)) {
       const ir::Value value = constant(type);
-      add(value, type);
+      if (values.empty() || dice_.one_in(4)) add(value, type);
       return value;
     }
     const int size = static_cast<int>(values.size());
     const int back = dice_.one_in(2) ? dice_.below(std::min(size, 6)) : dice_.below(size);
     return values[static_cast<std::size_t>(size - 1 - back)];
+  }
+
+  // All inputs, and something of the other types that depends on them, so that not all is constant.
+  void start_with_inputs() {
+    for (std::size_t i = 0; i < module_.inputs.size(); ++i) {
+      const ir::Value input = b_->emit(Op::input, {}, static_cast<std::int32_t>(i));
+      add(input);
+      add(b_->emit(Op::f2i, {input}));
+      add(b_->emit(Op::flt, {input, b_->const_f32(dice_.floating())}));
+    }
+    // A few indices that many array accesses share: the same for all, per sample, per frame.
+    const auto small = [&](int input) {
+      const ir::Value whole = b_->emit(Op::f2i, {b_->emit(Op::input, {}, input)});
+      return b_->emit(Op::iand, {whole, b_->const_i32(3)});
+    };
+    calm_indices_ = {b_->const_i32(0), b_->const_i32(1), b_->const_i32(2), small(3)};
+    calm_values_ = {b_->emit(Op::input, {}, 3), b_->emit(Op::input, {}, 4), b_->const_f32(0.75f)};
+    indices_ = calm_indices_;
+    indices_.push_back(small(0));
+  }
+
+  // Some value of any type as a float, so that outputs observe much of what is computed.
+  ir::Value observed() {
+    const Type type = random_type();
+    const auto& values = pool_[static_cast<std::size_t>(type)];
+    const ir::Value value = values.empty() ? any(type) : dice_.pick(values);
+    if (type == Type::i32) return b_->emit(Op::i2f, {value});
+    if (type == Type::boolean) return b_->emit(Op::select, {value, b_->const_f32(1.0f), b_->const_f32(0.0f)});
+    return value;
   }
 
   void fill(int count, int depth) {
@@ -176,9 +206,9 @@ class RandomIr {
         make_external();
       } else if (kind < 7 && in_entry_) {
         add(b_->emit(Op::input, {}, dice_.below(static_cast<int>(module_.inputs.size()))));
-      } else if (kind < 11 && in_entry_ && !b_->function().arrays.empty()) {
+      } else if (kind < (depth > 0 ? 14 : 11) && in_entry_ && !b_->function().arrays.empty()) {
         make_array_access();
-      } else if (kind == 11 && in_entry_ && options_.checks) {
+      } else if (kind == 14 && in_entry_ && options_.checks) {
         // True two times out of three and more.
         const ir::Value condition = b_->emit(Op::bor, {any(Type::boolean), any(Type::boolean)});
         b_->emit_void(Op::check, {condition}, dice_.below(2));
@@ -223,18 +253,22 @@ class RandomIr {
   void make_array_access() {
     const int array = dice_.below(static_cast<int>(b_->function().arrays.size()));
     const int component = dice_.below(b_->function().arrays[static_cast<std::size_t>(array)].components);
-    // Mostly small indices, so that arrays are hit.
+    // Mostly small indices, so that arrays are hit, and the same ones.
     const auto small = [&] {
+      if (!dice_.one_in(3)) return dice_.pick(indices_);
       const ir::Value index = any(Type::i32);
       return dice_.one_in(4) ? index : b_->emit(Op::iand, {index, b_->const_i32(7)});
     };
+    // Every other array is written with values of the frame only, so that some are of rate frame.
+    const bool calm = array % 2 == 1;
     switch (dice_.below(7)) {
-      case 0: return b_->emit_void(Op::array_resize, {small()}, array);
+      case 0: return b_->emit_void(Op::array_resize, {calm ? dice_.pick(calm_indices_) : small()}, array);
       case 1: return add(b_->emit(Op::array_length, {}, array));
       case 2:
       case 3: {
-        const ir::Value index = small();
-        return b_->emit_void(Op::array_store, {index, any(Type::f32)}, array, component);
+        const ir::Value index = calm ? dice_.pick(calm_indices_) : small();
+        const ir::Value value = calm ? dice_.pick(calm_values_) : any(Type::f32);
+        return b_->emit_void(Op::array_store, {index, value}, array, component);
       }
       default: return add(b_->emit(Op::array_load, {small()}, array, component));
     }
@@ -317,6 +351,9 @@ class RandomIr {
   ir::Module module_;
   ir::Builder* b_ = nullptr;
   Pool pool_;
+  std::vector<ir::Value> indices_;
+  std::vector<ir::Value> calm_indices_;
+  std::vector<ir::Value> calm_values_;
   bool in_entry_ = false;
 };
 

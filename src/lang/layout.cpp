@@ -1,5 +1,5 @@
-// Balancing brackets in two passes: the first finds those without a partner and reports them; the second knows them, and
-// ends each unclosed one where the text goes back to its line's indentation.
+// Balancing brackets. A text in which every bracket has its partner is done in one pass. In any other, a pass that also
+// looks at lines finds those without, and a last one ends each of them where the text goes back to its line's indentation.
 #include "lang/layout.h"
 
 #include <algorithm>
@@ -33,7 +33,10 @@ class Balancer {
 
   std::vector<Token> run() {
     pass();
-    repairing_ = true;
+    if (balanced_) return std::move(out_);
+    mode_ = Mode::searching;
+    pass();
+    mode_ = Mode::repairing;
     pass();
 
     // Repairs may find another partner for a bracket; an error must be left of them all the same.
@@ -55,7 +58,8 @@ class Balancer {
   const SourceFile& source_;
   FileId file_;
   Diagnostics& diagnostics_;
-  bool repairing_ = false;      // the second pass
+  enum class Mode { matching, searching, repairing } mode_ = Mode::matching;
+  bool balanced_ = true;        // the first pass found every partner
   bool reported_ = false;       // an opening bracket without partner
   std::vector<bool> unclosed_;  // by token: an opening bracket without partner
   std::vector<Open> open_;
@@ -81,7 +85,7 @@ class Balancer {
       switch (token.kind) {
         case newline:
           indent = token.indent;
-          start_line(token, tokens_[i + 1]);
+          start_line(i);
           break;
         case left_paren: case left_bracket: open(i, indent); break;
         case left_brace:
@@ -106,7 +110,19 @@ class Balancer {
     }
   }
 
-  void start_line(const Token& token, const Token& next) {
+  // A line that sets a name, and begins no deeper than the line of the open bracket.
+  bool looks_like_assignment(std::size_t line) const {
+    if (line + 2 >= tokens_.size() || tokens_[line + 1].kind != name) return false;
+    const TokenKind op = tokens_[line + 2].kind;
+    return (op == assign || op == plus_assign || op == minus_assign || op == star_assign || op == slash_assign ||
+            op == power_assign) &&
+           tokens_[line].indent <= open_.back().indent;
+  }
+
+  void start_line(std::size_t line) {
+    const Token &token = tokens_[line], &next = tokens_[line + 1];
+    if (mode_ != Mode::matching && in_expression() && looks_like_assignment(line))
+      while (in_expression()) close_missing(token);
     // An unclosed bracket ends where its line's indentation comes back.
     while (!open_unclosed_.empty() && open_[open_unclosed_.back()].indent >= token.indent && next.kind != right_brace) {
       const std::size_t depth = open_unclosed_.back();
@@ -127,7 +143,8 @@ class Balancer {
 
   void close(const Token& token, TokenKind opener) {
     if (count(opener) == 0) {
-      if (!repairing_) report_stray(token);
+      balanced_ = false;
+      if (mode_ == Mode::searching) report_stray(token);
       // `(a]`: taken for the bracket that was meant.
       if (in_expression() && opener != left_brace) close_as(partner(top()), token);
       return;
@@ -146,9 +163,10 @@ class Balancer {
   // The innermost bracket has no end in the text; one is put in behind the last word, before `before`.
   void close_missing(const Token& before) {
     const std::size_t opener = open_.back().token;
-    if (!repairing_)
+    balanced_ = false;
+    if (mode_ == Mode::searching)
       unclosed_[opener] = true;
-    else if (unclosed_[opener])
+    else if (mode_ == Mode::repairing && unclosed_[opener])
       report_unclosed(tokens_[opener], before);
     const std::uint32_t at = out_.back().end;
     const TokenKind kind = partner(top());

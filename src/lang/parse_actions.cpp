@@ -22,7 +22,7 @@ StmtPtr Parser::action_statement(const Layout& layout) {
     skip_head();
   }
   const Restore inside(in_action_, true);
-  node.body = body(layout, "action");
+  node.body = body(layout, "action", !node.name.empty());
   return make_statement(begin, std::move(node));
 }
 

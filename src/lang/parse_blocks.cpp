@@ -70,7 +70,7 @@ bool Parser::next_line(const Layout& layout, std::uint32_t& tolerated) {
 }
 
 // What a head governs: `{ ... }`, deeper lines, or one statement on the same line.
-Block Parser::body(const Layout& outer, std::string_view head) {
+Block Parser::body(const Layout& outer, std::string_view head, bool understood) {
   Block block;
   const Level level(*this);
   if (!level) return block;
@@ -85,6 +85,8 @@ Block Parser::body(const Layout& outer, std::string_view head) {
     const std::uint32_t begin = peek().begin;
     statements(block, inner);
     block.span = since(begin);
+  } else if (at_statement_end() && !understood) {
+    // The head's own error has been reported.
   } else if (at_statement_end()) {
     const Span place{file_, previous_end_, previous_end_};
     report("missing-block", place, "`" + std::string(head) + "` has no block", "an indented line, or `{`",

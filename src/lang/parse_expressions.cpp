@@ -298,10 +298,11 @@ bool Parser::at_new_element() const {
   return juxtaposed_ && at(minus) && peek().space_before && !peek(1).space_before;
 }
 
-// `[[ name =` or `[[ ]]` behind a value.
+// `[[ name =`, ` [[ name` or `[[ ]]` behind a value. An index in double brackets would be a vector, which none is.
 bool Parser::at_metadata() const {
   if (!at(left_bracket) || peek(1).kind != left_bracket || peek(1).space_before) return false;
-  return (peek(2).kind == name && peek(3).kind == assign) || peek(2).kind == right_bracket;
+  const bool entry = peek(2).kind == name && (peek(3).kind == assign || peek().space_before);
+  return entry || peek(2).kind == right_bracket;
 }
 
 // ---- Errors -----------------------------------------------------------------------------------------------------

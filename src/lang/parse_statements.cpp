@@ -182,7 +182,7 @@ StmtPtr Parser::if_statement(const Layout& layout) {
     IfBranch branch;
     branch.condition = condition();
     branch.head = since(head);
-    branch.body = body(layout, "if");
+    branch.body = body(layout, "if", branch.condition != nullptr);
     node.branches.push_back(std::move(branch));
 
     // Another branch, on this line or the next; `else if` is a branch like any other, however many there are.
@@ -192,7 +192,7 @@ StmtPtr Parser::if_statement(const Layout& layout) {
       take();
       IfBranch otherwise;
       otherwise.head = since(head);
-      otherwise.body = body(layout, "else");
+      otherwise.body = body(layout, "else", true);
       node.branches.push_back(std::move(otherwise));
       break;
     }
@@ -223,7 +223,7 @@ StmtPtr Parser::while_statement(const Layout& layout) {
   const std::uint32_t begin = take().begin;
   WhileStmt node;
   node.condition = condition();
-  node.body = body(layout, "while");
+  node.body = body(layout, "while", node.condition != nullptr);
   return make_statement(begin, std::move(node));
 }
 
@@ -255,7 +255,7 @@ StmtPtr Parser::for_statement(const Layout& layout) {
     }
   }
   if (!node.sequence) skip_head();
-  node.body = body(layout, "for");
+  node.body = body(layout, "for", node.sequence != nullptr);
   return make_statement(begin, std::move(node));
 }
 
@@ -284,7 +284,7 @@ StmtPtr Parser::function_statement(const Layout& layout) {
   if (!understood) skip_head();
   node.head = since(begin);
   const Restore outside(in_action_, false);
-  node.body = body(layout, "function");
+  node.body = body(layout, "function", understood);
   return make_statement(begin, std::move(node));
 }
 

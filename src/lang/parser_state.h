@@ -120,7 +120,8 @@ class Parser {
   // ---- Blocks and lines (parse_blocks.cpp) ----
   void statements(Block& block, const Layout& layout);
   bool next_line(const Layout& layout, std::uint32_t& tolerated);
-  Block body(const Layout& layout, std::string_view head);
+  // What `head` governs; a missing block is no further error where the head was not understood.
+  Block body(const Layout& layout, std::string_view head, bool understood);
   Block braced_block();
   void skip_statement();
   void skip_head();

@@ -1,0 +1,91 @@
+// Programs that are refused, or questioned: each file in refused/ says behind the lines concerned what is reported there,
+//   # error: code @column "part of the suggestion"      # warning: code @column
+// and nothing else may be. The column counts characters.
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "parsed.h"
+
+namespace pse::test {
+
+namespace {
+
+struct Expected {
+  std::string severity, code;
+  int column = 0;
+  std::string suggestion;
+};
+
+std::string read(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::stringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+std::vector<Expected> expectations(const std::string& line) {
+  static const std::regex form(R"re(# (error|warning): ([a-z-]+) @([0-9]+)(?: "([^"]*)")?)re");
+  std::vector<Expected> result;
+  for (std::sregex_iterator at(line.begin(), line.end(), form), end; at != end; ++at)
+    result.push_back({(*at)[1], (*at)[2], std::stoi((*at)[3]), (*at)[4]});
+  return result;
+}
+
+void check(const std::filesystem::path& path) {
+  SCOPED_TRACE(path.filename().string());
+  const std::string text = read(path);
+  const Parsed parsed(text);
+  const auto reported = nlohmann::json::parse(print_json(parsed.diagnostics, parsed.sources));
+  std::size_t next = 0;
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    for (const Expected& expected : expectations(line)) {
+      if (next >= reported.size()) {
+        ADD_FAILURE() << "line " << number << ": no " << expected.code << "\n" << parsed.printed();
+        return;
+      }
+      const auto& found = reported[next++];
+      EXPECT_EQ(found["line"], number) << parsed.printed();
+      EXPECT_EQ(found["severity"], expected.severity) << "line " << number;
+      EXPECT_EQ(found["code"], expected.code) << "line " << number;
+      EXPECT_EQ(found["column"], expected.column) << "line " << number;
+      const auto suggestion = found["suggestion"].get<std::string>();
+      EXPECT_NE(suggestion.find(expected.suggestion), std::string::npos) << "line " << number << ": " << suggestion;
+      if (::testing::Test::HasFailure()) return;
+    }
+  }
+  EXPECT_EQ(next, reported.size()) << parsed.printed();
+}
+
+}  // namespace
+
+TEST(Refused, EachErrorAtItsPlaceWithItsSuggestion) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(PSE_SOURCE_DIR "/tests/lang/refused")) {
+    check(entry.path());
+    ++files;
+  }
+  EXPECT_GE(files, 6);
+}
+
+TEST(Refused, WhatIsMissingAtALinesEndIsMissingBehindItsLastWord) {
+  EXPECT_EQ(Parsed("a = \nb = 1").summary(), "1:4 unexpected-word");
+  EXPECT_EQ(Parsed("a = ").summary(), "1:4 unexpected-word");
+  EXPECT_EQ(Parsed("a = 1 +   # more\nb = 1").summary(), "1:8 unexpected-word");
+  EXPECT_EQ(Parsed("a = \"text\nb = 1").summary(), "1:5 open-string");
+  EXPECT_EQ(Parsed("a = \"text").summary(), "1:5 open-string");
+}
+
+TEST(Refused, AfterAnErrorTheRestIsRead) {
+  const Parsed parsed("a = )\nb = 1\nif c = 2\n  d = (\ne = 3\n");
+  EXPECT_EQ(parsed.summary(), "1:4 unexpected-word, 1:5 stray-bracket, 3:6 assignment-in-condition, 4:7 unclosed-bracket");
+  EXPECT_NE(parsed.tree().find("set b 1"), std::string::npos);
+  EXPECT_NE(parsed.tree().find("set e 3"), std::string::npos);
+}
+
+}  // namespace pse::test

@@ -1,0 +1,496 @@
+// Random programs: valid, well-typed and ending, the same for the same seed on every machine. They drive the tests that
+// hold two ways of running a program against each other, and those of the formatter. They use numbers and vectors,
+// conditionals, loops with early ends, functions (with defaults, names and functions as arguments), arrays, swizzles,
+// noise, blocks once per frame, and arithmetic that meets NaN, infinity, subnormal numbers and both zeros.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace pse::test {
+
+struct RandomProgramOptions {
+  // Names that the stream brings, with their components; those once per frame.
+  std::vector<std::pair<std::string, int>> sample_inputs = {{"x", 1}, {"y", 1}, {"u", 1}, {"v", 1}, {"point", 3}};
+  std::vector<std::pair<std::string, int>> frame_inputs = {{"frame", 1}, {"time", 1}};
+  bool library = true;    // call functions of library/ too
+  bool arrays = true;
+  bool functions = true;
+  int statements = 8;     // at top level, about
+};
+
+class RandomProgram {
+ public:
+  explicit RandomProgram(std::uint64_t seed, RandomProgramOptions options = {})
+      : options_(std::move(options)), state_(seed * 2 + 1) {
+    build();
+  }
+
+  const std::string& text() const { return text_; }
+
+ private:
+  struct Variable {
+    std::string name;
+    int components = 1;      // of it, or of an array's elements
+    bool settable = true;
+    int elements = 0;        // of an array; 0: no array
+  };
+  struct Function {
+    std::string name;
+    std::vector<int> parameters;      // components; 0 stands for a function of one argument
+    int default_from = 0;             // parameters from here on have defaults
+    int function_components = 1;      // of that function's argument and result
+    int result = 1;
+    int weight = 1;
+  };
+
+  RandomProgramOptions options_;
+  std::uint64_t state_;
+  std::string text_;
+  std::vector<Variable> scope_;
+  std::vector<Function> functions_;
+  int names_ = 0;
+  int indent_ = 0;
+  int loops_ = 0;         // around the current statement
+  int weight_ = 0;        // of the function being made, or of the program
+  int times_ = 1;         // how often the current statement runs at most
+  bool in_function_ = false;
+  bool frame_only_ = false;
+  int result_ = 1;        // components that the current function returns
+
+  // ---- Chance ----
+
+  // SplitMix64, by S. Vigna.
+  std::uint64_t next() {
+    std::uint64_t z = state_ += 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+  }
+  int below(int n) { return static_cast<int>(next() % static_cast<std::uint64_t>(n)); }
+  bool chance(int percent) { return below(100) < percent; }
+  template <std::size_t n>
+  std::string pick(const std::array<std::string_view, n>& list) {
+    return std::string(list[static_cast<std::size_t>(below(static_cast<int>(n)))]);
+  }
+  std::string fresh(const char* stem) { return stem + std::to_string(++names_); }
+
+  // ---- Expressions ----
+
+  std::string number() {
+    static constexpr std::array<std::string_view, 32> numbers = {
+        "0",    "1",     "2",       "3",      "0.5",  "0.25", ".1",    "7.5",   "1.",    "10",     "100",
+        "1e3",  "1e-3",  "3e38",    "1e-38",  "1e-44", "1e20", "0.333", "12.25", "16777217", "0.1", "0.7",
+        "4",    "5",     "1.5",     "2.5",    "0.9",  "0.99", "6",     "PI",    "TAU",   "E"};
+    if (chance(3)) return chance(50) ? "INF" : "NAN";
+    if (chance(10)) return "(-" + pick(numbers) + ")";
+    return pick(numbers);
+  }
+
+  std::string variable(int components) {
+    std::vector<std::string> names;
+    for (const Variable& variable : scope_)
+      if (variable.components == components && variable.elements == 0) names.push_back(variable.name);
+    if (names.empty()) return components == 1 ? number() : literal(components, 0);
+    // The latest ones are read more often.
+    const int count = static_cast<int>(names.size());
+    return names[static_cast<std::size_t>(std::max(below(count), below(count)))];
+  }
+
+  std::string literal(int components, int depth) {
+    const bool commas = chance(40);
+    std::string out = "[";
+    for (int i = 0; i < components; ++i) {
+      if (i > 0) out += commas ? ", " : " ";
+      out += commas ? value(1, depth) : factor(1, depth);
+    }
+    return out + "]";
+  }
+
+  std::string letters(int count, int of) {
+    static constexpr std::array<std::string_view, 2> sets = {"xyzw", "rgba"};
+    const std::string set = pick(sets);
+    std::string out;
+    for (int i = 0; i < count; ++i) out += set[static_cast<std::size_t>(below(of))];
+    return out;
+  }
+
+  // A value that stands anywhere without parentheses of its own.
+  std::string factor(int components, int depth) {
+    ++weight_;
+    if (depth <= 0 || weight_ > 1500) return chance(components == 1 ? 35 : 15) ? constant(components) : variable(components);
+    switch (below(12)) {
+      case 0: case 1: return variable(components);
+      case 2: return constant(components);
+      case 3: case 4: return call(components, depth - 1);
+      case 5: return components == 1 ? component(depth - 1) : literal(components, depth - 1);
+      case 6: return noise(components, depth - 1);
+      case 7: return own_function(components, depth - 1);
+      case 8: return swizzle(components, depth - 1);
+      case 9: return element(components);
+      default: return "(" + value(components, depth - 1, chance(30)) + ")";
+    }
+  }
+
+  std::string constant(int components) { return components == 1 ? number() : literal(components, 0); }
+
+  std::string value(int components, int depth, bool compact = false) {
+    if (depth <= 0) return factor(components, 0);
+    const auto side = [&](int other) {
+      return other == 0 || components == 1 ? factor(components, depth - 1) : factor(1, depth - 1);
+    };
+    static constexpr std::array<std::string_view, 10> operators = {"+", "-", "*", "*", "+", "-", "/", "/", "%", "^"};
+    switch (below(8)) {
+      case 0: return factor(components, depth);
+      case 1: return "-" + factor(components, depth - 1);
+      case 2: {
+        const std::string test = condition(depth - 1);
+        const std::string one = value(components, depth - 1);
+        return "(" + test + " ? " + one + " : " + value(components, depth - 1) + ")";
+      }
+      case 3: if (components == 1) return "(" + condition(depth - 1) + ") * " + factor(1, depth - 1); [[fallthrough]];
+      default: {
+        const int scalar_side = below(3);  // 1: left, 2: right
+        const std::string left = side(scalar_side == 1);
+        const std::string op = pick(operators);
+        const std::string right = side(scalar_side == 2);
+        return compact ? left + op + right : left + " " + op + " " + right;
+      }
+    }
+  }
+
+  std::string condition(int depth) {
+    static constexpr std::array<std::string_view, 8> comparisons = {" < ", " <= ", " > ", " >= ", " == ", " != ", " < ", " > "};
+    if (depth > 0) {
+      switch (below(8)) {
+        case 0: return "(" + condition(depth - 1) + ") and " + condition(depth - 1);
+        case 1: return condition(depth - 1) + " or (" + condition(depth - 1) + ")";
+        case 2: return "not (" + condition(depth - 1) + ")";
+        case 3: return "isnan(" + value(1, depth - 1) + ")";
+        default: break;
+      }
+    }
+    const std::string left = factor(1, depth);
+    const std::string op = pick(comparisons);
+    return left + op + factor(1, depth);
+  }
+
+  // A built-in function, or one of the library.
+  std::string call(int components, int depth) {
+    static constexpr std::array<std::string_view, 30> of_one = {
+        "abs", "sign", "floor", "ceil", "round", "trunc", "fract", "sqrt", "cbrt", "exp", "exp2", "expm1", "log",
+        "log2", "log10", "log1p", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "sin", "cos",
+        "abs", "floor", "sqrt"};
+    static constexpr std::array<std::string_view, 5> of_two = {"min", "max", "pow", "atan2", "min"};
+    const std::string a = value(components, depth);
+    switch (below(10)) {
+      case 0: case 1: case 2: return pick(of_one) + "(" + a + ")";
+      case 3: case 4: return pick(of_two) + "(" + a + ", " + value(components, depth) + ")";
+      case 5: return "select(" + condition(depth) + ", " + a + ", " + value(components, depth) + ")";
+      case 6:
+        if (!options_.library) return "abs(" + a + ")";
+        return "clamp(" + a + ", " + number() + ", " + number() + ")";
+      case 7:
+        if (!options_.library) return "fract(" + a + ")";
+        return "lerp(" + factor(1, depth) + ", " + a + ", " + value(components, depth) + ")";
+      case 8:
+        if (components != 1) return "fma(" + a + ", " + value(components, depth) + ", " + value(components, depth) + ")";
+        return reduction(depth);
+      default:
+        if (components != 1) return "floor(" + a + ")";
+        return reduction(depth);
+    }
+  }
+
+  // A number out of vectors.
+  std::string reduction(int depth) {
+    static constexpr std::array<std::string_view, 5> of_one = {"norm", "sum", "product", "min", "max"};
+    const int n = 2 + below(3);
+    if (chance(35)) return "dot(" + value(n, depth) + ", " + value(n, depth) + ")";
+    return pick(of_one) + "(" + value(n, depth) + ")";
+  }
+
+  std::string noise(int components, int depth) {
+    static constexpr std::array<std::string_view, 6> of_number = {"Noise", "snoise", "unoise", "noise1985", "hash", "Noise"};
+    const int n = 1 + below(3);
+    const std::string argument = value(n, depth > 1 ? 1 : depth);
+    if (components == 3 && chance(60)) {
+      if (n == 3 && chance(50)) return "Dnoise(" + argument + ")";
+      return "vnoise(" + (n == 3 ? argument : value(3, 1)) + ")";
+    }
+    const std::string one = pick(of_number) + "(" + argument + ")";
+    if (components == 1) return one;
+    return "(" + one + " * " + factor(components, 0) + ")";
+  }
+
+  std::string component(int depth) {
+    const int n = 2 + below(3);
+    if (chance(50)) return variable(n) + "." + letters(1, n);
+    return "(" + value(n, depth) + ")[" + std::to_string(1 + below(n)) + "]";
+  }
+
+  std::string swizzle(int components, int depth) {
+    const int n = 2 + below(3);
+    const std::string base = chance(70) ? variable(n) : "(" + value(n, depth) + ")";
+    return base + "." + letters(components, n);
+  }
+
+  // An element of an array, at an index that is inside whatever the numbers are.
+  std::string element(int components) {
+    for (const Variable& variable : scope_) {
+      if (variable.elements == 0 || variable.components != components || chance(50)) continue;
+      const std::string n = std::to_string(variable.elements);
+      if (chance(60)) return variable.name + "[" + std::to_string(1 + below(variable.elements)) + "]";
+      return variable.name + "[" + condition(0) + " ? " + n + " : 1]";
+    }
+    return variable(components);
+  }
+
+  std::string own_function(int components, int depth) {
+    std::vector<const Function*> fitting;
+    for (const Function& function : functions_)
+      if (function.result == components && weight_ + function.weight * times_ < 1500) fitting.push_back(&function);
+    if (fitting.empty() || frame_only_) return call(components, depth);
+    const Function& function = *fitting[static_cast<std::size_t>(below(static_cast<int>(fitting.size())))];
+    weight_ += function.weight;
+    std::string out = function.name + "(";
+    for (std::size_t i = 0; i < function.parameters.size(); ++i) {
+      const bool optional = function.default_from > 0 && static_cast<int>(i) >= function.default_from;
+      if (optional && chance(50)) break;
+      if (i > 0) out += ", ";
+      if (function.parameters[i] == 0)
+        out += mapping(function.function_components);
+      else
+        out += (optional && chance(50) ? "p" + std::to_string(i + 1) + " = " : "") +
+               value(function.parameters[i], depth > 1 ? 1 : depth);
+    }
+    return out + ")";
+  }
+
+  // The name of a function from `components` to as many.
+  std::string mapping(int components) {
+    static constexpr std::array<std::string_view, 6> of_any = {"sin", "cos", "abs", "floor", "sqrt", "exp"};
+    for (const Function& function : functions_)
+      if (function.parameters.size() == 1 && function.parameters[0] == components && function.result == components &&
+          chance(60))
+        return function.name;
+    return pick(of_any);
+  }
+
+  // ---- Statements ----
+
+  void line(const std::string& statement) {
+    text_.append(static_cast<std::size_t>(4 * indent_), ' ');
+    text_ += statement;
+    if (chance(4)) text_ += "  # " + fresh("remark ");
+    text_ += '\n';
+  }
+
+  // Statements in a block of their own, behind `head`; what they introduce is gone behind it.
+  template <class Body>
+  void block(const std::string& head, Body body) {
+    const bool braces = chance(25);
+    line(head + (braces ? " {" : ""));
+    ++indent_;
+    const std::size_t known = scope_.size();
+    body();
+    scope_.resize(known);
+    --indent_;
+    if (braces) line("}");
+  }
+
+  int any_size() {
+    static constexpr std::array<int, 8> sizes = {1, 1, 1, 1, 2, 3, 3, 4};
+    return sizes[static_cast<std::size_t>(below(8))];
+  }
+
+  void introduce() {
+    const int n = any_size();
+    const std::string value_text = value(n, 3);
+    const std::string name = fresh(n == 1 ? "s" : "c");
+    line(name + " = " + value_text);
+    scope_.push_back({name, n});
+  }
+
+  void change() {
+    std::vector<const Variable*> settable;
+    for (const Variable& variable : scope_)
+      if (variable.settable && variable.elements == 0) settable.push_back(&variable);
+    if (settable.empty()) return introduce();
+    const Variable target = *settable[static_cast<std::size_t>(below(static_cast<int>(settable.size())))];
+    static constexpr std::array<std::string_view, 6> operators = {" = ", " += ", " -= ", " *= ", " /= ", " = "};
+    const std::string op = pick(operators);
+    const int n = target.components;
+    if (n > 1 && chance(25)) {
+      line(target.name + "." + letters(1, n) + op + value(1, 2));
+    } else if (n > 1 && chance(20)) {
+      line(target.name + "[" + std::to_string(1 + below(n)) + "]" + op + value(1, 2));
+    } else if (n > 2 && chance(20)) {
+      line(target.name + (chance(50) ? ".yx" : ".xz") + " = " + value(2, 2));
+    } else {
+      line(target.name + op + (n > 1 && op != " = " && chance(40) ? value(1, 2) : value(n, 2)));
+    }
+  }
+
+  void make_array() {
+    const int n = chance(60) ? 1 : 3;
+    const int elements = 2 + below(3);
+    const std::string name = fresh("list");
+    if (chance(40)) {
+      const std::string i = fresh("i");
+      block("for " + i + " in [1 .. " + std::to_string(elements) + "]", [&] {
+        scope_.push_back({i, 1, false});
+        line(name + "[" + i + "] = " + value(n, 2));
+      });
+    } else {
+      for (int e = 1; e <= elements; ++e) line(name + "[" + std::to_string(e) + "] = " + value(n, 1));
+    }
+    scope_.push_back({name, n, false, elements});
+  }
+
+  void choice(int depth) {
+    block("if " + condition(2), [&] { statements(1 + below(2), depth - 1); });
+    if (chance(30)) block((chance(50) ? "else if " : "elif ") + condition(1), [&] { statements(1, depth - 1); });
+    if (chance(50)) block("else", [&] { statements(1 + below(2), depth - 1); });
+  }
+
+  void loop_body(int depth, int turns) {
+    ++loops_;
+    times_ *= turns;
+    statements(1 + below(2), depth - 1);
+    if (chance(25)) line("if " + condition(1) + " " + (chance(50) ? "break" : "continue"));
+    if (chance(50)) change();
+    times_ /= turns;
+    --loops_;
+  }
+
+  void for_loop(int depth) {
+    const std::string i = fresh("i");
+    int components = 1, turns = 3;
+    std::string sequence;
+    switch (below(5)) {
+      case 0: sequence = "[1 .. " + std::to_string(1 + below(4)) + "]"; break;
+      case 1: sequence = "[1 .. (" + condition(1) + " ? 2 : 4)]"; break;
+      case 2: sequence = "[0.5 .. -1 by -0.5]"; break;
+      case 3: sequence = literal(3, 1); break;
+      default: {
+        sequence = "[3 .. 1]";
+        for (const Variable& variable : scope_)
+          if (variable.elements > 0) sequence = variable.name, components = variable.components;
+      }
+    }
+    block("for " + i + " in " + sequence, [&] {
+      scope_.push_back({i, components, false});
+      loop_body(depth, turns);
+    });
+  }
+
+  void while_loop(int depth) {
+    const std::string count = fresh("_k");
+    line(count + " = 0");
+    const std::string limit = count + " < " + std::to_string(1 + below(5));
+    block("while " + limit + (chance(60) ? " and (" + condition(1) + ")" : ""), [&] {
+      line(count + " += 1");
+      scope_.push_back({count, 1, false});
+      loop_body(depth, 4);
+    });
+  }
+
+  void statements(int count, int depth) {
+    for (int i = 0; i < count; ++i) {
+      const int kind = below(100);
+      if (kind < 30 || weight_ > 1500) {
+        chance(50) || indent_ > 0 ? change() : introduce();
+      } else if (kind < 55) {
+        introduce();
+      } else if (kind < 72 && depth > 0) {
+        choice(depth);
+      } else if (kind < 84 && depth > 0 && loops_ < 2) {
+        chance(65) ? for_loop(depth) : while_loop(depth);
+      } else if (kind < 88 && options_.arrays && loops_ == 0 && indent_ <= 1 && depth == 2) {
+        make_array();
+      } else if (kind < 92 && in_function_) {
+        line("if " + condition(1) + " return " + value(result_, 2));
+      } else {
+        change();
+      }
+    }
+  }
+
+  // ---- Program ----
+
+  void make_function() {
+    Function function;
+    function.name = fresh("f");
+    function.result = any_size();
+    function.function_components = any_size();
+    const int count = 1 + below(3);
+    const bool higher = chance(30);
+    scope_.clear();
+    std::string head = "function " + function.name + "(";
+    for (int i = 1; i <= count; ++i) {
+      const std::string name = "p" + std::to_string(i);
+      const bool is_function = higher && i == 1;
+      const bool optional = i > 1 && i == count && chance(40);
+      function.parameters.push_back(is_function ? 0 : optional ? 1 : any_size());
+      if (optional) function.default_from = i - 1;
+      head += (i > 1 ? ", " : "") + name + (optional ? " = " + number() : "");
+      // A parameter may be set; the one with a default keeps its kind.
+      if (!is_function) scope_.push_back({name, function.parameters.back()});
+    }
+    for (const auto& [name, components] : options_.sample_inputs) scope_.push_back({name, components, false});
+
+    const int outer = weight_;
+    weight_ = 0;
+    in_function_ = true;
+    result_ = function.result;
+    block(head + ")", [&] {
+      if (higher) {
+        const std::string name = fresh("s");
+        line(name + " = p1(p1(" + value(function.function_components, 1) + "))");
+        scope_.push_back({name, function.function_components});
+      }
+      statements(1 + below(3), 1);
+      line("return " + value(function.result, 2));
+    });
+    in_function_ = false;
+    function.weight = weight_ * 3 + 1;
+    weight_ = outer;
+    functions_.push_back(function);
+  }
+
+  void build() {
+    line("# a random program");
+    if (options_.functions)
+      for (int i = below(4); i > 0; --i) make_function();
+    scope_.clear();
+    weight_ = 0;
+
+    // What holds for a whole frame: knobs, and a block that is computed once.
+    for (const auto& [name, components] : options_.frame_inputs) scope_.push_back({name, components, false});
+    if (chance(40)) {
+      const std::string knob = fresh("Knob");
+      line(knob + " = 0.3 [[ min = 0, max = 1, label = \"a knob\" ]]");
+      scope_.push_back({knob, 1, false});
+    }
+    if (chance(40)) {
+      frame_only_ = true;
+      std::vector<Variable> made;
+      line("if begin_frame");
+      ++indent_;
+      for (int i = 1 + below(2); i > 0; --i) introduce();
+      --indent_;
+      frame_only_ = false;
+    }
+    for (const auto& [name, components] : options_.sample_inputs) scope_.push_back({name, components, false});
+    statements(options_.statements / 2 + below(options_.statements), 2);
+    introduce();
+  }
+};
+
+}  // namespace pse::test

@@ -64,7 +64,7 @@ struct Lowered {
 };
 
 // Errors go to `diagnostics`; the result is meaningful only when there are none.
-Lowered lower(SourceMap& sources, const lang::Program& program, const LowerHost& host, const LowerOptions& options,
+Lowered lower_program(SourceMap& sources, const lang::Program& program, const LowerHost& host, const LowerOptions& options,
               Diagnostics& diagnostics);
 
 }  // namespace pse

@@ -1,0 +1,278 @@
+// Builtins whose meaning depends on the shapes of their arguments, so that no program could say them.
+#include <limits>
+
+#include "lower/lowering.h"
+
+namespace pse::lower {
+
+namespace {
+
+constexpr const char* names[] = {"dot",       "cross", "transpose", "count", "size",
+                                 "sum",       "product", "min",  "max",   "abs",       "select", "any",
+                                 "all",       "array",   "texture", "number", "vector", "identity",
+                                 "isnan",     "isfinite"};
+
+}  // namespace
+
+bool Lowering::is_intrinsic(const std::string& name) const {
+  for (const char* known_name : names)
+    if (name == known_name) return true;
+  return false;
+}
+
+std::vector<std::string> Lowering::intrinsic_names() const { return {std::begin(names), std::end(names)}; }
+
+Typed Lowering::intrinsic_dot(const Typed& a, const Typed& b, const Span& span) {
+  if (a.components() != b.components()) {
+    error("shapes", span, "`dot` needs two vectors of one length, these are " + describe(a) + " and " + describe(b));
+    return {};
+  }
+  ir::Value sum = emit(ir::Op::fmul, {a.parts[0], b.parts[0]});
+  for (std::size_t i = 1; i < a.parts.size(); ++i)
+    sum = emit(ir::Op::fadd, {sum, emit(ir::Op::fmul, {a.parts[i], b.parts[i]})});
+  return number(sum);
+}
+
+// min, max, sum, product, any, all: over the arguments component by component, or over one vector's components.
+Typed Lowering::intrinsic_fold(const std::string& name, std::vector<CallArgument>& arguments, const Span& span) {
+  if (arguments.empty()) {
+    error("argument-count", span, "`" + name + "` needs at least one argument");
+    return {};
+  }
+  const auto fold = [&](ir::Value a, ir::Value b) {
+    if (name == "min") return emit(ir::Op::fmin, {a, b});
+    if (name == "max") return emit(ir::Op::fmax, {a, b});
+    if (name == "sum") return emit(ir::Op::fadd, {a, b});
+    if (name == "product") return emit(ir::Op::fmul, {a, b});
+    return emit(name == "all" ? ir::Op::band : ir::Op::bor, {a, b});
+  };
+  const bool logical = name == "any" || name == "all";
+  for (CallArgument& argument : arguments) {
+    argument.value = to_number(argument.value);
+    if (!argument.value.is_numeric()) {
+      error("argument-type", argument.span, "`" + name + "` works on numbers and vectors, this is " +
+                                                describe(argument.value));
+      return {};
+    }
+    if (logical)
+      for (ir::Value& part : argument.value.parts) part = emit(ir::Op::fne, {part, constant(0)});
+  }
+  if (arguments.size() == 1 || logical || name == "sum" || name == "product") {
+    // Everything into one number.
+    ir::Value result = ir::no_value;
+    for (const CallArgument& argument : arguments)
+      for (const ir::Value part : argument.value.parts)
+        result = result == ir::no_value ? part : fold(result, part);
+    return logical ? truth(result) : number(result);
+  }
+  Typed result = arguments.front().value;
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    const Typed& next = arguments[i].value;
+    const auto shape = common_shape(result, next);
+    if (!shape) {
+      error("argument-type", arguments[i].span,
+            "`" + name + "` is given " + describe(result) + " and " + describe(next),
+            "vectors in one call must have the same length");
+      return {};
+    }
+    const Typed a = promote(result, *shape), b = promote(next, *shape);
+    result = *shape;
+    for (std::size_t c = 0; c < result.parts.size(); ++c) result.parts[c] = fold(a.parts[c], b.parts[c]);
+  }
+  return result;
+}
+
+Typed Lowering::intrinsic_texture(std::vector<CallArgument>& arguments, const Span& span) {
+  // texture(file, u, v, layer, filter, wrap, width): the first three by place, the others by name or place.
+  const char* const order[] = {"file", "u", "v", "layer", "filter", "wrap", "width"};
+  std::map<std::string, CallArgument*> given;
+  std::size_t place = 0;
+  for (CallArgument& argument : arguments) {
+    std::string name = argument.name;
+    if (name.empty()) {
+      // texture(file, [u v]) is the same as texture(file, u, v).
+      if (place == 1 && argument.value.kind == Kind::vector && argument.value.rows == 2) {
+        given["uv"] = &argument;
+        place = 3;
+        continue;
+      }
+      name = place < std::size(order) ? order[place] : "";
+      ++place;
+    }
+    bool known_name = false;
+    for (const char* candidate : order) known_name = known_name || name == candidate;
+    if (!known_name) {
+      error("unknown-argument", argument.span, "`texture` takes (file, u, v, layer, filter, wrap, width)");
+      return {};
+    }
+    given[name] = &argument;
+  }
+  const auto text = [&](const char* name, const char* otherwise, std::initializer_list<const char*> allowed) {
+    if (!given.contains(name)) return std::string(otherwise);
+    const Typed& value = given[name]->value;
+    bool fits = value.kind == Kind::text && (allowed.size() == 0 || value.text == otherwise);
+    for (const char* candidate : allowed) fits = fits || (value.kind == Kind::text && value.text == candidate);
+    if (!fits) {
+      std::string list;
+      for (const char* candidate : allowed) list += (list.empty() ? "" : ", ") + ("\"" + std::string(candidate) + "\"");
+      error("argument-type", given[name]->span,
+            std::string("`") + name + "` of `texture` is a text" + (list.empty() ? "" : ": one of " + list));
+      return std::string("?");
+    }
+    return value.text;
+  };
+  if (!given.contains("file")) {
+    error("argument-count", span, "`texture` needs the name of an image file", "texture(\"wood.exr\", u, v)");
+    return {};
+  }
+  const std::string file = text("file", "", {});
+  const std::string layer = text("layer", "color", {});
+  const std::string filter = text("filter", "linear", {"nearest", "linear", "cubic", "mipmap"});
+  const std::string wrap = text("wrap", "repeat", {"repeat", "clamp", "mirror", "black"});
+  if (file == "?" || layer == "?" || filter == "?" || wrap == "?") return {};
+
+  // The coordinates and the filter's width.
+  std::vector<ir::Value> operands;
+  if (given.contains("uv")) operands = given["uv"]->value.parts;
+  for (const char* name : {"u", "v"}) {
+    if (given.contains("uv")) break;
+    if (!given.contains(name)) {
+      error("argument-count", span, "`texture` needs the coordinates u and v");
+      return {};
+    }
+    const Typed value = to_number(given[name]->value);
+    if (value.kind != Kind::number) {
+      error("argument-type", given[name]->span, "a coordinate is a number, this is " + describe(value));
+      return {};
+    }
+    operands.push_back(value.parts.front());
+  }
+  const Typed width = given.contains("width") ? to_number(given["width"]->value) : number(0.0f);
+  if (width.kind != Kind::number) {
+    error("argument-type", given["width"]->span, "`width` is a number, this is " + describe(width));
+    return {};
+  }
+  operands.push_back(width.parts.front());
+
+  std::string problem = "images cannot be read here";
+  const int components = host_.texture_components ? host_.texture_components(file, layer, problem) : 0;
+  if (components <= 0) {
+    error("texture", given["file"]->span, problem);
+    return {};
+  }
+  const std::string name = "texture " + layer + " " + filter + " " + wrap + " " + file;
+  std::size_t index = 0;
+  while (index < module_.externals.size() && module_.externals[index].name != name) ++index;
+  if (index == module_.externals.size()) module_.externals.push_back({name, 3, components});
+  const std::vector<ir::Type> types(static_cast<std::size_t>(components), ir::Type::f32);
+  const auto results = builder_->emit_multi(ir::Op::external, operands, types, static_cast<std::int32_t>(index));
+  return components == 1 ? number(results.front()) : vector(results);
+}
+
+Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument>& arguments, const Span& span) {
+  if (name == "texture") return intrinsic_texture(arguments, span);
+  if (name == "min" || name == "max" || name == "sum" || name == "product" || name == "any" || name == "all") {
+    if (!((name == "sum") && arguments.size() == 1 && arguments.front().value.kind == Kind::array))
+      return intrinsic_fold(name, arguments, span);
+  }
+  const auto needs = [&](std::size_t count) {
+    if (arguments.size() == count) return true;
+    error("argument-count", span, "`" + name + "` takes " + std::to_string(count) + " argument" +
+                                      (count == 1 ? "" : "s") + ", this gives " + std::to_string(arguments.size()));
+    return false;
+  };
+  const auto refuse = [&](const char* what) {
+    error("argument-type", arguments.front().span,
+          "`" + name + "` needs " + what + ", this is " + describe(arguments.front().value));
+    return Typed{};
+  };
+  if (name == "select") {
+    if (!needs(3)) return {};
+    const Typed condition = to_truth(arguments[0].value, arguments[0].span);
+    if (condition.is_error()) return {};
+    const auto shape = common_shape(arguments[1].value, arguments[2].value);
+    if (!shape) {
+      error("argument-type", span, "`select` is given " + describe(arguments[1].value) + " and " +
+                                       describe(arguments[2].value));
+      return {};
+    }
+    const Typed a = promote(arguments[1].value, *shape), b = promote(arguments[2].value, *shape);
+    Typed result = *shape;
+    for (std::size_t i = 0; i < result.parts.size(); ++i)
+      result.parts[i] = emit(ir::Op::select, {condition.parts.front(), a.parts[i], b.parts[i]});
+    return result;
+  }
+  if (name == "dot") {
+    if (!needs(2)) return {};
+    const Typed a = to_number(arguments[0].value), b = to_number(arguments[1].value);
+    if (!a.is_numeric() || !b.is_numeric() || a.kind == Kind::matrix) return refuse("two vectors");
+    return intrinsic_dot(a, b, span);
+  }
+  if (name == "cross") {
+    if (!needs(2)) return {};
+    const Typed &a = arguments[0].value, &b = arguments[1].value;
+    if (a.kind != Kind::vector || a.rows != 3 || b.kind != Kind::vector || b.rows != 3)
+      return refuse("two vectors of 3");
+    std::vector<ir::Value> parts;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+      parts.push_back(emit(ir::Op::fsub, {emit(ir::Op::fmul, {a.parts[j], b.parts[k]}),
+                                          emit(ir::Op::fmul, {a.parts[k], b.parts[j]})}));
+    }
+    return vector(std::move(parts));
+  }
+  if (name == "array") {
+    if (!needs(1)) return {};
+    const auto capacity = arguments[0].value.kind == Kind::number ? known(arguments[0].value.parts.front()) : std::nullopt;
+    if (!capacity || !(*capacity >= 1 && *capacity <= 1048576)) return refuse("a constant from 1 to 1048576");
+    return new_array("array", static_cast<std::int32_t>(*capacity));
+  }
+  if (!needs(1)) return {};
+  const Typed value = to_number(arguments.front().value);
+  if (name == "count" || name == "size") {
+    if (value.kind == Kind::array) return array_length(value);
+    if (value.is_numeric()) return number(static_cast<float>(value.rows));
+    return refuse("an array or a vector");
+  }
+  if (!value.is_numeric()) return refuse("a number or a vector");
+  if (name == "abs") {
+    Typed result = value;
+    for (ir::Value& part : result.parts) part = emit(ir::Op::fabs, {part});
+    return result;
+  }
+  if (name == "isnan" || name == "isfinite") {
+    ir::Value result = ir::no_value;
+    for (const ir::Value part : value.parts) {
+      const ir::Value here = name == "isnan"
+                                 ? emit(ir::Op::fne, {part, part})
+                                 : emit(ir::Op::flt, {emit(ir::Op::fabs, {part}),
+                                                      constant(std::numeric_limits<float>::infinity())});
+      result = result == ir::no_value ? here : emit(name == "isnan" ? ir::Op::bor : ir::Op::band, {result, here});
+    }
+    return truth(result);
+  }
+  if (name == "number") return value.kind == Kind::number ? value : refuse("a number or a truth value");
+  if (name == "vector") return vector(value.parts);
+  if (name == "transpose") {
+    if (value.kind != Kind::matrix) return refuse("a matrix");
+    Typed result = value;
+    std::swap(result.rows, result.columns);
+    for (int r = 0; r < value.rows; ++r)
+      for (int c = 0; c < value.columns; ++c)
+        result.parts[static_cast<std::size_t>(c * value.rows + r)] = value.parts[static_cast<std::size_t>(r * value.columns + c)];
+    return result;
+  }
+  if (name == "identity") {
+    const auto size = value.kind == Kind::number ? known(value.parts.front()) : std::nullopt;
+    if (!size || !(*size >= 1 && *size <= 16)) return refuse("a constant from 1 to 16");
+    Typed result{.kind = Kind::matrix, .parts = {}, .text = {}, .function = {}};
+    result.rows = result.columns = static_cast<int>(*size);
+    for (int r = 0; r < result.rows; ++r)
+      for (int c = 0; c < result.rows; ++c) result.parts.push_back(constant(r == c ? 1.0f : 0.0f));
+    return result;
+  }
+  error("unknown-function", span, "`" + name + "` is not known here");
+  return {};
+}
+
+}  // namespace pse::lower

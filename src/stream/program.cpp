@@ -1,0 +1,68 @@
+// The compiler from end to end: text -> tree -> IR -> passes -> kernel. The table of contents of a compilation.
+#include "stream/program.h"
+
+#include <chrono>
+#include <utility>
+
+#include "lang/parser.h"
+
+namespace pse {
+namespace {
+
+// Seconds since the last call.
+class Clock {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+std::shared_ptr<const Program> compile(SourceMap& sources, FileId file, const LowerHost& host,
+                                       const CompileOptions& options, Diagnostics& diagnostics) {
+  auto program = std::make_shared<Program>();
+  Clock clock;
+
+  // Text to tree.
+  const lang::Program tree = lang::parse(sources, file, diagnostics);
+  program->times.parse = clock.lap();
+  if (diagnostics.has_errors()) return nullptr;
+
+  // Tree to IR.
+  Lowered lowered = lower_program(sources, tree, host, options.lower, diagnostics);
+  program->times.lower = clock.lap();
+  if (diagnostics.has_errors()) return nullptr;
+  program->knobs = std::move(lowered.knobs);
+  program->outputs = std::move(lowered.outputs);
+  program->reads = std::move(lowered.reads);
+  if (options.after_pass) options.after_pass("lower", lowered.module);
+
+  // IR to IR.
+  const passes::PipelineOptions pipeline{.optimize = options.optimize, .after_pass = options.after_pass};
+  program->split =
+      std::make_shared<const passes::SplitModule>(passes::run_pipeline(std::move(lowered.module), pipeline));
+  program->times.passes = clock.lap();
+
+  // IR to kernel.
+  if (options.interpret) {
+    program->kernel = make_interpreted_kernel(program->split);
+  } else {
+    CodegenStats stats;
+    auto kernel = compile_kernel(*program->split, options.codegen, &stats);
+    if (!kernel) {
+      diagnostics.error("codegen", Span{}, kernel.error());
+      return nullptr;
+    }
+    program->kernel = std::move(*kernel);
+    program->times.from_cache = stats.from_cache;
+  }
+  program->times.codegen = clock.lap();
+  return program;
+}
+
+}  // namespace pse

@@ -11,6 +11,7 @@ using namespace lang;
 
 Lowering::Lowering(SourceMap& sources, const LowerHost& host, const LowerOptions& options, Diagnostics& diagnostics)
     : sources_(sources), host_(host), options_(options), diagnostics_(&diagnostics) {
+  module_.functions.reserve(BuiltinEmitter::room_for_builtins + 1);
   module_.functions.emplace_back();
   module_.functions.front().name = "main";
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "ir/module.h"
 #include "passes/pipeline.h"
@@ -38,6 +39,7 @@ void hoist(ir::Module& module);
 struct DeadOptions {
   bool arrays = true;     // off: arrays keep their numbers
   bool functions = true;  // likewise functions
+  std::vector<bool> observed;  // arrays whose elements are read when the function is over
 };
 void remove_dead(ir::Module& module, const DeadOptions& options = {});
 

@@ -24,10 +24,13 @@ class DeadCode {
         array_use_(function.arrays.size(), 0),
         writers_(function.arrays.size()) {}
 
-  void run() {
+  void run(const std::vector<bool>& observed) {
     find_definitions(function_.body, nowhere);
     for (const Value value : function_.body.yields) mark(value);
     for (const Writer& check : checks_) mark_effect(check);
+    for (std::size_t i = 0; i < observed.size() && i < array_use_.size(); ++i) {
+      if (observed[i]) mark_array(i, true);
+    }
     propagate();
     sweep(function_.body);
   }
@@ -261,7 +264,7 @@ void remove_functions(ir::Module& module) {
 void remove_dead(ir::Module& module, const DeadOptions& options) {
   for (Function& function : module.functions) {
     DeadCode dead(function);
-    dead.run();
+    dead.run(options.observed);
     if (options.arrays && !function.arrays.empty()) remove_arrays(function, dead);
   }
   if (options.functions) remove_functions(module);

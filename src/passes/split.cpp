@@ -76,12 +76,19 @@ class ReadsTooEarly {
   std::uint32_t next_ = 0;
 };
 
-void drop_unused(Function& function) {
+void drop_unused(Function& function, const std::vector<bool>& observed = {}) {
   // remove_dead takes a module; this one holds only the function.
   ir::Module alone;
   alone.functions.push_back(std::move(function));
-  remove_dead(alone, {.arrays = false, .functions = false});
+  remove_dead(alone, {.arrays = false, .functions = false, .observed = observed});
   function = std::move(alone.functions[0]);
+}
+
+void find_arrays_read(const Region& region, std::vector<bool>& read) {
+  for (const Instruction& in : region.body) {
+    if (reads_array(in.op)) read[static_cast<std::size_t>(in.imm)] = true;
+    for (const Region& inner : in.regions) find_arrays_read(inner, read);
+  }
 }
 
 // Inputs that a function reads.
@@ -146,7 +153,9 @@ SplitModule split(ir::Module module) {
   result.first_slot = static_cast<std::uint32_t>(first_slot);
   result.frame = static_cast<std::uint32_t>(module.functions.size());
   Function frame = cut_frame_function(program, slots);
-  drop_unused(frame);
+  std::vector<bool> observed(program.arrays.size(), false);
+  find_arrays_read(sample.function.body, observed);
+  drop_unused(frame, observed);
   module.main() = std::move(sample.function);
   module.functions.push_back(std::move(frame));
   result.module = std::move(module);

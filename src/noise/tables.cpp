@@ -60,6 +60,24 @@ constexpr std::array<float, 32> w4 = {
     1, 1, 1, 1, -1, -1, -1, -1, 0, 0, 0, 0, 0, 0, 0, 0,
 };
 
+// 2/pi behind the point, and its windows of twelve bits.
+constexpr std::array<std::uint32_t, 8> two_over_pi_bits = {0xa2f9836e, 0x4e441529, 0xfc2757d1, 0xf534ddc0,
+                                                           0xdb629599, 0x3c439041, 0xfe5163ab, 0};
+constexpr int bit_of_two_over_pi(int i) {
+  if (i < 1 || i > 256) return 0;
+  return static_cast<int>((two_over_pi_bits[static_cast<std::size_t>((i - 1) / 32)] >> (31 - (i - 1) % 32)) & 1u);
+}
+constexpr std::array<std::int32_t, 256> two_over_pi_windows = [] {
+  std::array<std::int32_t, 256> windows{};
+  for (int start = 0; start < 256; ++start) {
+    for (int i = 0; i < 12; ++i) {
+      auto& window = windows[static_cast<std::size_t>(start)];
+      window = 2 * window + bit_of_two_over_pi(start - two_over_pi_lead + i);
+    }
+  }
+  return windows;
+}();
+
 constexpr std::array one = {FloatTable{"slope.1", slopes}};
 constexpr std::array two = {FloatTable{"x.2", x2}, FloatTable{"y.2", y2}};
 constexpr std::array three = {FloatTable{"x.3", x3}, FloatTable{"y.3", y3}, FloatTable{"z.3", z3}};
@@ -69,6 +87,8 @@ constexpr std::array four = {FloatTable{"x.4", x4}, FloatTable{"y.4", y4}, Float
 }  // namespace
 
 constinit const ByteTable permutation = {"permutation", permutation_entries};
+
+constinit const IntTable two_over_pi = {"two_over_pi", two_over_pi_windows};
 
 std::span<const FloatTable> gradient_tables(std::size_t dimensions) {
   constexpr std::array<std::span<const FloatTable>, 4> tables = {one, two, three, four};

@@ -14,4 +14,9 @@ extern const ByteTable permutation;
 // The gradients of the 2002 noise in 1 to 4 dimensions: one table for each component, of 16 (4-D: 32) entries.
 std::span<const FloatTable> gradient_tables(std::size_t dimensions);
 
+// Twelve consecutive bits of 2/pi from each bit on: entry i starts at bit i - two_over_pi_lead behind the point (the
+// first is bit 1), and bits before the first are 0. For the reduction of large angles.
+inline constexpr int two_over_pi_lead = 32;
+extern const IntTable two_over_pi;
+
 }  // namespace pse::num

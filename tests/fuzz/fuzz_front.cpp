@@ -29,12 +29,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   pse::lang::print_tokens(first.sources, first.program.file);
   if (first.diagnostics.has_errors()) return 0;
 
-  // What was accepted: print it, and format it twice.
-  pse::lang::print_ast(first.program);
+  // What was accepted: its formatted text has the same tree and comments, and formats to itself.
   const std::string formatted = pse::lang::format(first.program, first.sources);
   Parsed second;
   parse(second, formatted);
   if (second.diagnostics.has_errors()) std::abort();
+  if (pse::lang::print_ast(first.program) != pse::lang::print_ast(second.program)) std::abort();
+  if (first.program.comments.size() != second.program.comments.size()) std::abort();
   if (pse::lang::format(second.program, second.sources) != formatted) std::abort();
   return 0;
 }

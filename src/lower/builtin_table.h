@@ -55,5 +55,6 @@ struct BuiltinEntry {
 std::span<const BuiltinEntry> math_builtins();
 std::span<const BuiltinEntry> vector_builtins();
 std::span<const BuiltinEntry> noise_builtins();
+std::span<const BuiltinEntry> random_builtins();
 
 }  // namespace pse

@@ -14,7 +14,7 @@ namespace {
 const std::vector<BuiltinEntry>& entries() {
   static const std::vector<BuiltinEntry> list = [] {
     std::vector<BuiltinEntry> all;
-    for (const auto group : {math_builtins(), vector_builtins(), noise_builtins()}) {
+    for (const auto group : {math_builtins(), vector_builtins(), noise_builtins(), random_builtins()}) {
       all.insert(all.end(), group.begin(), group.end());
     }
     return all;

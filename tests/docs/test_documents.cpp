@@ -65,8 +65,8 @@ TEST_P(Documents, ProgramDoesWhatItsCommentsSay) {
   check_program(GetParam().place, GetParam().text, GetParam().modules);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Documents, testing::ValuesIn(all_blocks()), [](const auto& info) {
-  std::string name = info.param.place;
+INSTANTIATE_TEST_SUITE_P(All, Documents, testing::ValuesIn(all_blocks()), [](const auto& block) {
+  std::string name = block.param.place;
   for (char& letter : name)
     if (!std::isalnum(static_cast<unsigned char>(letter))) letter = '_';
   return name;

@@ -45,8 +45,10 @@ TEST_P(LibraryFile, OpensWithACommentAndDescribesEachFunction) {
   const std::vector<std::string> lines = lines_of(text_of(fs::path(PSE_SOURCE_DIR) / "library" / GetParam()));
   ASSERT_FALSE(lines.empty());
   EXPECT_TRUE(lines.front().starts_with("# "));
-  for (std::size_t i = 1; i < lines.size(); ++i)
-    if (lines[i].starts_with("function ")) EXPECT_TRUE(lines[i - 1].starts_with("# ")) << lines[i];
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    if (!lines[i].starts_with("function ")) continue;
+    EXPECT_TRUE(lines[i - 1].starts_with("# ")) << lines[i];
+  }
 }
 
 TEST_P(LibraryFile, HasProgramsThatTestEveryFunction) {
@@ -66,9 +68,10 @@ INSTANTIATE_TEST_SUITE_P(All, LibraryFile, testing::ValuesIn(programs_in("librar
 TEST(Library, DefinesEachFunctionOnce) {
   std::set<std::string> seen;
   for (const std::string& file : programs_in("library"))
-    for (const std::string& line : lines_of(text_of(fs::path(PSE_SOURCE_DIR) / "library" / file)))
-      if (line.starts_with("function "))
-        EXPECT_TRUE(seen.insert(line.substr(9, line.find('(') - 9)).second) << file << ": " << line;
+    for (const std::string& line : lines_of(text_of(fs::path(PSE_SOURCE_DIR) / "library" / file))) {
+      if (!line.starts_with("function ")) continue;
+      EXPECT_TRUE(seen.insert(line.substr(9, line.find('(') - 9)).second) << file << ": " << line;
+    }
 }
 
 // ---- What the functions give -----------------------------------------------------------------------------------

@@ -1,0 +1,42 @@
+// `pse check`: errors and warnings of programs.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/program_file.h"
+#include "app/report.h"
+
+namespace pse::app {
+
+Exit check_command(Session& session) {
+  const auto& names = session.arguments.positionals;
+  if (names.empty()) throw usage_error("check needs a program", "pse check PROGRAM...");
+  if (std::count(names.begin(), names.end(), "-") > 1) throw usage_error("standard input can be read only once");
+  const WarningPolicy policy = warning_policy(session.arguments);
+  const bool json = session.arguments.has("json");
+
+  Exit worst = Exit::ok;
+  std::string all_json;
+  for (const std::string& name : names) {
+    ProgramFile program = read_program(name, session);
+    Diagnostics found;
+    survey(program, module_host(program.path, session), found);
+    const Diagnostics shown = filtered(found, policy);
+    if (json) {
+      // Join the files' arrays into one.
+      const std::string list = print_json(shown, program.sources);
+      const std::string inner = list.substr(list.find('[') + 1, list.rfind(']') - list.find('[') - 1);
+      const bool empty = inner.find('{') == std::string::npos;
+      if (!empty) all_json += (all_json.empty() ? "" : ",") + inner;
+    } else {
+      session.console.raw_error(print_text(shown, program.sources, session.console.colour()));
+      if (shown.all().empty()) session.console.note(fmt::format("{}: no errors", program.sources.file(program.file).name));
+    }
+    const Exit exit = exit_of(shown, policy);
+    if (worst == Exit::ok || exit == Exit::program) worst = exit == Exit::ok ? worst : exit;
+  }
+  if (json) session.console.print("[" + all_json + "]\n");
+  return worst;
+}
+
+}  // namespace pse::app

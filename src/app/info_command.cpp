@@ -1,0 +1,135 @@
+// `pse info`: what is in a program or an image.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "app/knobs.h"
+#include "app/program_file.h"
+#include "app/report.h"
+#include "app/stats.h"
+#include "image/compare.h"
+#include "passes/pipeline.h"
+
+namespace pse::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct ProgramInfo {
+  std::string name;
+  std::vector<Knob> knobs;
+  std::vector<ProgramOutput> outputs;
+  std::vector<std::string> reads;
+  OperationCounts operations;
+};
+
+ProgramInfo examine_program(const std::string& name, Session& session) {
+  ProgramFile program = read_program(name, session);
+  Diagnostics diagnostics;
+  Lowered lowered = survey(program, module_host(program.path, session), diagnostics);
+  if (diagnostics.has_errors()) report(diagnostics, program.sources, session);
+  ProgramInfo info{program.sources.file(program.file).name, std::move(lowered.knobs), std::move(lowered.outputs),
+                   std::move(lowered.reads), {}};
+  info.operations = count_operations(passes::run_pipeline(std::move(lowered.module)));
+  return info;
+}
+
+std::string output_text(const ProgramOutput& output) {
+  return output.components == 1 ? output.name : fmt::format("{}[{}]", output.name, output.components);
+}
+
+std::string program_text(const ProgramInfo& info) {
+  std::vector<std::string> sets;
+  for (const ProgramOutput& output : info.outputs) sets.push_back(output_text(output));
+  std::string out = fmt::format("{}: program\n", info.name);
+  out += fmt::format("  reads       {}\n", info.reads.empty() ? "nothing" : fmt::format("{}", fmt::join(info.reads, " ")));
+  out += fmt::format("  sets        {}\n", sets.empty() ? "nothing" : fmt::format("{}", fmt::join(sets, " ")));
+  out += fmt::format("  operations  {} constant, {} per frame, {} per sample\n", info.operations.constant,
+                     info.operations.frame, info.operations.sample);
+  return out + knob_help(info.knobs);
+}
+
+Json program_json(const ProgramInfo& info) {
+  Json knobs = Json::array(), outputs = Json::array();
+  for (const Knob& knob : info.knobs) {
+    Json entry = {{"knob", knob.name}};
+    if (knob.is_text())
+      entry["value"] = knob.text;
+    else if (knob.is_boolean)
+      entry["value"] = knob.value.front() != 0;
+    else if (knob.value.size() == 1)
+      entry["value"] = knob.value.front();
+    else
+      entry["value"] = knob.value;
+    if (knob.min) entry["min"] = *knob.min;
+    if (knob.max) entry["max"] = *knob.max;
+    for (const auto& [key, text] : {std::pair{"label", &knob.label}, {"help", &knob.help}, {"widget", &knob.widget},
+                                    {"units", &knob.units}, {"page", &knob.page}})
+      if (!text->empty()) entry[key] = *text;
+    if (!knob.options.empty()) entry["options"] = knob.options;
+    knobs.push_back(std::move(entry));
+  }
+  for (const ProgramOutput& output : info.outputs)
+    outputs.push_back({{"name", output.name}, {"components", output.components}});
+  return {{"file", info.name}, {"kind", "program"}, {"reads", info.reads}, {"sets", outputs}, {"knobs", knobs},
+          {"operations",
+           {{"constant", info.operations.constant}, {"frame", info.operations.frame}, {"sample", info.operations.sample}}}};
+}
+
+image::ImageSpec examine_image(const std::string& file) {
+  const auto reader = image::open_reader(file);
+  if (!reader) throw Failure(Exit::input, reader.error().message);
+  return (*reader)->spec();
+}
+
+std::string image_text(const std::string& name, const image::ImageSpec& spec) {
+  std::string out = fmt::format("{}: image\n", name);
+  for (const auto& [heading, text] : image::describe(spec)) {
+    // Texts of several lines stand below their heading.
+    if (text.find('\n') == std::string::npos) {
+      out += fmt::format("  {:<18}  {}\n", heading, text);
+    } else {
+      out += fmt::format("  {}\n", heading);
+      for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        out += fmt::format("    {}\n", text.substr(at, end - at));
+        at = end + 1;
+      }
+    }
+  }
+  return out;
+}
+
+Json image_json(const std::string& name, const image::ImageSpec& spec) {
+  Json json = {{"file", name}, {"kind", "image"}, {"width", spec.display.width()}, {"height", spec.display.height()}};
+  for (const auto& [heading, text] : image::describe(spec)) json["about"][heading] = text;
+  for (const image::Channel& channel : spec.channels)
+    json["channels"].push_back({{"name", channel.name}, {"type", image::name_of(channel.type)}});
+  for (const auto& [key, text] : spec.attributes) json["attributes"][key] = text;
+  return json;
+}
+
+}  // namespace
+
+Exit info_command(Session& session) {
+  const auto& names = session.arguments.positionals;
+  if (names.empty()) throw usage_error("info needs a program or an image", "pse info FILE...");
+  const bool as_json = session.arguments.has("json");
+  Json all = Json::array();
+  for (const std::string& name : names) {
+    if (name.ends_with(".pse")) {
+      const ProgramInfo info = examine_program(name, session);
+      as_json ? all.push_back(program_json(info)) : session.console.print(program_text(info));
+    } else {
+      const std::string file = session.find_file(name);
+      const image::ImageSpec spec = examine_image(file);
+      as_json ? all.push_back(image_json(file, spec)) : session.console.print(image_text(file, spec));
+    }
+  }
+  if (as_json) session.console.print(all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  return Exit::ok;
+}
+
+}  // namespace pse::app

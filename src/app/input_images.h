@@ -1,0 +1,50 @@
+// The images given on the command line as a source of samples: each layer is a named value at every pixel.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "app/render_options.h"
+#include "image/layers.h"
+#include "image/reader.h"
+#include "stream/executor.h"
+
+namespace pse::app {
+
+class InputImages {
+ public:
+  InputImages(const RenderOptions& options, const Session& session);
+
+  // Opens each image's file for a frame and checks that their sizes agree. Throws Failure (input).
+  void open(int frame);
+  // Whether another frame needs other files.
+  bool vary() const;
+
+  // The names that the open images bring, those of the image without a name bare.
+  std::vector<StreamName> names() const;
+  // The frame of the pictures in file coordinates; the first image's. Nothing without images.
+  std::optional<image::Window> display() const;
+  // Where any of them has pixels, joined with the display window.
+  std::optional<image::Window> data() const;
+  // Files opened for this frame, with what tells one version of a file from another.
+  std::vector<std::pair<std::string, std::string>> identities() const;
+
+  // Reads the channels that the module reads, and gives what fills them in. Throws Failure (input).
+  TileSource load(const ir::Module& module);
+
+ private:
+  struct Open {
+    std::string name;     // of the variable
+    std::string pattern;  // as found
+    std::string file;     // of this frame
+    std::unique_ptr<image::ImageReader> reader;
+    std::vector<image::Layer> layers;
+  };
+  std::vector<Open> images_;
+  image::ReadOptions read_;
+};
+
+// A file's size and time of change; "-" has none.
+std::string file_identity(const std::string& file);
+
+}  // namespace pse::app

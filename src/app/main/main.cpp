@@ -1,0 +1,14 @@
+// The program `pse`. Everything it does is in the library beside it; see command_line.cpp.
+#include <csignal>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "app/session.h"
+
+int main(int argc, char** argv) {
+  // A reader that has gone away is an error of writing, not a reason to die.
+  std::signal(SIGPIPE, SIG_IGN);
+  pse::app::Console console(stdout, stderr);
+  return pse::app::run_command_line(std::vector<std::string>(argv + 1, argv + argc), console);
+}

@@ -1,0 +1,118 @@
+// `pse render`: from arguments to files.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdlib>
+
+#include "app/emit.h"
+#include "app/help.h"
+#include "app/knobs.h"
+#include "app/program_file.h"
+#include "app/render_job.h"
+#include "app/report.h"
+#include "lang/parser.h"
+
+namespace pse::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path cache_folder() {
+  const char* cache = std::getenv("XDG_CACHE_HOME");
+  const char* home = std::getenv("HOME");
+  if (cache != nullptr && *cache == '/') return fs::path(cache) / "pse";
+  if (home != nullptr && *home == '/') return fs::path(home) / ".cache/pse";
+  return {};
+}
+
+// The command's help, or with a program that program's knobs.
+Exit show_help(Session& session) {
+  const auto& words = session.arguments.positionals;
+  if (words.empty()) {
+    session.console.print(command_help(*session.arguments.command));
+    return Exit::ok;
+  }
+  ProgramFile program = read_program(words.front(), session);
+  Diagnostics diagnostics;
+  const Lowered lowered = survey(program, module_host(program.path, session), diagnostics);
+  if (diagnostics.has_errors()) report(diagnostics, program.sources, session);
+  session.console.print(fmt::format("usage: pse render {} [IMAGE...] [Name=VALUE...] -o FILE\n\n", words.front()));
+  session.console.print(knob_help(lowered.knobs));
+  session.console.print("\n`pse render --help` lists the options.\n");
+  return Exit::ok;
+}
+
+CompileOptions compile_options(const RenderOptions& options, const InputImages& images,
+                               const std::vector<KnobSetting>& settings, const lang::Program& tree) {
+  CompileOptions compile;
+  // The names of images hide those of the plane.
+  compile.lower.stream = images.names();
+  for (const StreamName& name : image_plane_names()) compile.lower.stream.push_back(name);
+  compile.lower.outputs = wanted_variables(options, tree);
+  for (const KnobSetting& setting : settings) {
+    // The last setting of a name counts.
+    std::erase_if(compile.lower.text_knobs, [&](const auto& knob) { return knob.first == setting.name; });
+    compile.lower.text_knobs.emplace_back(setting.name, setting.text);
+  }
+  compile.codegen.width = options.width;
+  compile.codegen.optimize = options.optimize;
+  if (options.cache) compile.codegen.cache = cache_folder();
+  compile.interpret = options.interpret;
+  compile.optimize = options.optimize;
+  return compile;
+}
+
+}  // namespace
+
+Exit render_command(Session& session) {
+  if (session.arguments.has("help")) return show_help(session);
+  const auto start = std::chrono::steady_clock::now();
+  Signals signals;
+
+  // Read the arguments, the program and the heads of the images.
+  const RenderOptions options = render_options(session);
+  const std::string stage = session.arguments.text_or("emit", "");
+  const std::string stats = session.arguments.text_or("stats", "");
+  if (options.outputs.empty() && stage.empty() && stats.empty())
+    throw usage_error("where should the picture go?", fmt::format("-o {}.png", fs::path(options.program).stem().string()));
+  const std::vector<KnobSetting> settings = knob_settings(session, options.knob_words);
+  ProgramFile program = read_program(options.program, session);
+  InputImages images(options, session);
+  images.open(choose_frames(options).front());
+
+  // Compile.
+  Diagnostics diagnostics;
+  Diagnostics ignored;  // compile() parses again and reports
+  const lang::Program tree = lang::parse(program.sources, program.file, ignored);
+  const CompileOptions compile_with = compile_options(options, images, settings, tree);
+  LowerHost host = module_host(program.path, session);
+  Textures textures(session, program.path, options.write.working);
+  textures.answer(host);
+  if (!stage.empty()) {
+    const std::string text = emit_stage(stage, program, host, compile_with, diagnostics);
+    session.console.print(text);
+    report(diagnostics, program.sources, session);
+    return Exit::ok;
+  }
+  const auto compiled = compile(program.sources, program.file, host, compile_with, diagnostics);
+  report(diagnostics, program.sources, session);
+  if (!compiled) return Exit::program;
+  const std::vector<Knob> knobs = apply_settings(compiled->knobs, settings, session.console);
+
+  textures.load(compiled->module());
+
+  // Run.
+  RenderJob job(session, options, program.sources, program.file, compiled, knobs, images, textures, signals);
+  const Exit exit = job.run();
+  if (!stats.empty()) {
+    RunStats numbers = job.stats();
+    numbers.total_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (stats == "json")
+      session.console.print(stats_json(numbers));
+    else
+      session.console.raw_error(stats_text(numbers));
+  }
+  return exit;
+}
+
+}  // namespace pse::app

@@ -1,0 +1,228 @@
+// The loop over frames.
+#include "app/render_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "app/report.h"
+#include "image/sequence.h"
+
+namespace pse::app {
+namespace {
+
+// A tile size that gives every thread several tiles.
+int choose_tile(const RenderOptions& options, const Rect& window) {
+  if (options.tile > 0) return options.tile;
+  int tile = 64;
+  const auto tiles = [&] { return double(window.width()) * window.height() / (double(tile) * tile); };
+  while (tile > 16 && tiles() < 8.0 * thread_count(options.threads)) tile /= 2;
+  return tile;
+}
+
+// Memory for tiles that wait for their turn to be written.
+constexpr std::size_t tile_memory = std::size_t{128} << 20;
+
+}  // namespace
+
+std::vector<int> choose_frames(const RenderOptions& options) {
+  if (!options.frames.empty()) return options.frames;
+  for (const ImageRequest& image : options.images)
+    if (image::is_pattern(image.file))
+      if (std::vector<int> frames = image::existing_frames(image.file); !frames.empty()) return frames;
+  return {0};
+}
+
+RenderJob::RenderJob(Session& session, const RenderOptions& options, const SourceMap& sources, FileId file,
+                     std::shared_ptr<const Program> program, std::vector<Knob> knobs, InputImages& images,
+                     const Textures& textures, Signals& signals)
+    : session_(session),
+      options_(options),
+      sources_(sources),
+      file_(file),
+      program_(std::move(program)),
+      knobs_(std::move(knobs)),
+      images_(images),
+      textures_(textures),
+      signals_(signals),
+      frames_(choose_frames(options)),
+      files_(plan_outputs(options, *program_)),
+      first_names_(images.names()),
+      progress_(session.console, progress_style(session.arguments.text_or("progress", ""), session.console),
+                static_cast<int>(frames_.size())) {
+  // The picture: as asked for, as the images are, or 512 x 512.
+  const auto display = images_.display();
+  const Resolution size = options_.resolution.value_or(display ? Resolution{display->width(), display->height()} : Resolution{512, 512});
+  if (display && (size.width != display->width() || size.height != display->height()))
+    throw Failure(Exit::input, fmt::format("the picture is to have {}x{} pixels and the images have {}x{}", size.width,
+                                           size.height, display->width(), display->height()),
+                  "leave out --res, or scale the images first");
+  plane_ = {.width = size.width, .height = size.height, .fps = options_.fps, .seed = options_.seed, .transform = options_.transform};
+  window_ = choose_window();
+  stats_.compile = program_->times;
+  stats_.operations = count_operations(*program_->split);
+  stats_.width = program_->kernel->width();
+  stats_.threads = thread_count(options_.threads);
+  image::set_codec_threads(stats_.threads);
+
+  // Several frames need several files.
+  for (const PlannedFile& planned : files_)
+    if (frames_.size() > 1 && !image::is_pattern(planned.pattern))
+      throw usage_error(fmt::format("{} frames would all go to `{}`", frames_.size(), planned.pattern),
+                        "put %04d into the name where the frame's number should stand");
+}
+
+Rect RenderJob::choose_window() const {
+  if (options_.clip) return parse_clip(*options_.clip, {plane_.width, plane_.height});
+  const auto display = images_.display(), data = images_.data();
+  if (!display) return {0, 0, plane_.width, plane_.height};
+  // Images may have pixels beyond their frame; then so has the result.
+  return {data->x0 - display->x0, data->y0 - display->y0, data->x1 - display->x0, data->y1 - display->y0};
+}
+
+Exit RenderJob::run() {
+  Exit exit = Exit::ok;
+  for (std::size_t i = 0; i < frames_.size() && exit == Exit::ok; ++i) exit = run_frame(static_cast<int>(i), frames_[i]);
+  progress_.finish();
+  return exit;
+}
+
+Exit RenderJob::run_frame(int index, int frame) {
+  plane_.frame = frame;
+  if (index > 0 && images_.vary()) {
+    images_.open(frame);
+    check_channels();
+    window_ = choose_window();
+  }
+
+  // What this frame is made from, and whether it is there already.
+  RenderContext context{options_, sources_, file_, *program_, knobs_, plane_, window_, images_.identities()};
+  for (const auto& texture : textures_.identities()) context.inputs.push_back(texture);
+  std::vector<std::string> recipes;
+  if (options_.provenance)
+    for (const PlannedFile& planned : files_) recipes.push_back(recipe(context, planned));
+  if (options_.resume && skip_done(frame, recipes)) return Exit::ok;
+
+  // Open the files.
+  image::ImageSpec common;
+  common.display = images_.display().value_or(image::Window{0, 0, plane_.width, plane_.height});
+  if (options_.write.working != image::ColourSpace::lin_rec709)
+    common.chromaticities = image::chromaticities_of(options_.write.working);
+  common.frames_per_second = frames_.size() > 1 ? plane_.fps : 0;
+  if (options_.provenance) common.attributes = provenance(context);
+  const TileSource pixels = images_.load(program_->module());
+  const TileSource coordinates = image_plane_source(program_->module(), plane_, window_);
+  FrameWriter writer(files_, frame, common, window_, options_.nan, recipes);
+
+  // Compute.
+  progress_.begin_frame(index, frame);
+  RunStatus status;
+  signals_.watch(&status);
+  const auto source = [&](const TileView& tile) { coordinates(tile), pixels(tile); };
+  const RunResult result = compute(source, files_.empty() ? nullptr : &writer, status);
+  signals_.watch(nullptr);
+  stats_.compute_seconds += result.seconds;
+  if (result.end == RunEnd::failed) return report_failure(result, frame), Exit::running;
+  if (const int signal = signals_.stop_signal()) {
+    progress_.finish();
+    session_.console.note(fmt::format("stopped at frame {}; its files are as they were", frame));
+    return static_cast<Exit>(128 + signal);
+  }
+  if (result.end == RunEnd::cancelled) return Exit::running;
+  ++stats_.frames;
+  stats_.samples += double(window_.width()) * window_.height();
+
+  // Put the files in their places.
+  for (const std::string& name : writer.close())
+    if (name != "-") session_.console.note(fmt::format("wrote {}", name));
+  report_not_finite(writer);
+  return Exit::ok;
+}
+
+bool RenderJob::skip_done(int frame, const std::vector<std::string>& recipes) const {
+  for (std::size_t i = 0; i < files_.size(); ++i)
+    if (!is_done(*image::frame_name(files_[i].pattern, frame), recipes[i])) return false;
+  for (const PlannedFile& planned : files_)
+    session_.console.note(fmt::format("kept {}", *image::frame_name(planned.pattern, frame)));
+  return true;
+}
+
+FrameState RenderJob::frame_state() const {
+  FrameState state;
+  const ir::Module& module = program_->module();
+  set_plane_uniforms(module, plane_, state);
+  state.externals = textures_.functions();
+  for (const Knob& knob : knobs_)
+    for (std::size_t c = 0; c < knob.value.size(); ++c) {
+      const std::string name = knob.value.size() == 1 ? knob.name : fmt::format("{}.{}", knob.name, c);
+      for (std::size_t i = 0; i < module.inputs.size(); ++i)
+        if (module.inputs[i].rate == ir::Rate::frame && module.inputs[i].name == name) state.uniforms[i] = knob.value[c];
+    }
+  return state;
+}
+
+RunResult RenderJob::compute(const TileSource& source, FrameWriter* writer, RunStatus& status) {
+  const auto sink = [&](const TileView& tile) {
+    if (writer == nullptr) return;
+    writer->add(tile);
+    if (signals_.take_snapshot_request())
+      for (const std::string& name : writer->write_snapshots()) session_.console.note(fmt::format("wrote {}", name));
+  };
+  const int tile = choose_tile(options_, window_);
+  FrameState state = frame_state();
+  return execute(*program_, state, source, sink,
+                 {.window = window_,
+                  .tile_width = tile,
+                  .tile_height = tile,
+                  .threads = options_.threads,
+                  .ordered_sink = writer != nullptr,
+                  .progress = [this](double done) { progress_.update(done); },
+                  .memory_limit = tile_memory},
+                 status);
+}
+
+// A later frame's images must bring what the program was compiled for.
+void RenderJob::check_channels() const {
+  const std::vector<StreamName> names = images_.names();
+  for (const StreamName& first : first_names_) {
+    const bool read = std::find(program_->reads.begin(), program_->reads.end(), first.name) != program_->reads.end();
+    const bool same = std::any_of(names.begin(), names.end(), [&](const StreamName& name) {
+      return name.name == first.name && name.components == first.components;
+    });
+    if (read && !same)
+      throw Failure(Exit::input, fmt::format("the images of frame {:.0f} have no `{}` with {} component{} as those of the first frame have",
+                                             plane_.frame, first.name, first.components, first.components == 1 ? "" : "s"));
+  }
+}
+
+void RenderJob::report_failure(const RunResult& result, int frame) {
+  progress_.finish();
+  const ir::Check& check = program_->module().checks[static_cast<std::size_t>(result.failed_check)];
+  std::string place = result.x < 0 ? "" : fmt::format(", at pixel ({}, {})", result.x, result.y);
+  if (frames_.size() > 1) place += fmt::format(" of frame {}", frame);
+  Diagnostics diagnostics;
+  diagnostics.error("run-time", check.span, check.message + place);
+  session_.console.raw_error(print_text(diagnostics, sources_, session_.console.colour()));
+}
+
+void RenderJob::report_not_finite(const FrameWriter& writer) {
+  Diagnostics diagnostics;
+  for (const NotFiniteChannel& channel : writer.not_finite()) {
+    const std::string component = program_->module().outputs[channel.output].name;
+    const std::string name = component.substr(0, component.find('.'));
+    if (std::find(warned_.begin(), warned_.end(), name) != warned_.end()) continue;
+    warned_.push_back(name);
+    const auto output = std::find_if(program_->outputs.begin(), program_->outputs.end(),
+                                     [&](const ProgramOutput& o) { return o.name == name; });
+    const image::NotFinite& found = channel.found;
+    diagnostics.warning("not-finite", output == program_->outputs.end() ? Span{} : output->span,
+                        fmt::format("`{}` is NaN at {} and infinite at {} pixels, first at ({}, {}) of frame {:.0f}", name,
+                                    found.nan, found.infinite, found.x, found.y, plane_.frame),
+                        "--nan black, box3 or error says what to do with them");
+  }
+  if (!diagnostics.all().empty()) progress_.finish();
+  report(diagnostics, sources_, session_);
+}
+
+}  // namespace pse::app

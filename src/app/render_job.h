@@ -1,0 +1,57 @@
+// A compiled program with its knobs, images and files, run frame by frame.
+#pragma once
+
+#include "app/frame_writer.h"
+#include "app/input_images.h"
+#include "app/progress.h"
+#include "app/provenance.h"
+#include "app/signals.h"
+#include "app/stats.h"
+#include "app/textures.h"
+
+namespace pse::app {
+
+class RenderJob {
+ public:
+  // `images` has the first frame open.
+  RenderJob(Session& session, const RenderOptions& options, const SourceMap& sources, FileId file,
+            std::shared_ptr<const Program> program, std::vector<Knob> knobs, InputImages& images,
+            const Textures& textures, Signals& signals);
+
+  // All frames. Throws Failure; returns how a stopped or failed run should end.
+  Exit run();
+  const RunStats& stats() const { return stats_; }
+
+ private:
+  Exit run_frame(int index, int frame);
+  Rect choose_window() const;
+  bool skip_done(int frame, const std::vector<std::string>& recipes) const;
+  FrameState frame_state() const;
+  RunResult compute(const TileSource& source, FrameWriter* writer, RunStatus& status);
+  void check_channels() const;
+  void report_failure(const RunResult& result, int frame);
+  void report_not_finite(const FrameWriter& writer);
+
+  Session& session_;
+  const RenderOptions& options_;
+  const SourceMap& sources_;
+  const FileId file_;
+  const std::shared_ptr<const Program> program_;
+  const std::vector<Knob> knobs_;
+  InputImages& images_;
+  const Textures& textures_;
+  Signals& signals_;
+  std::vector<int> frames_;
+  std::vector<PlannedFile> files_;
+  std::vector<StreamName> first_names_;  // what the images of the first frame brought
+  ImagePlane plane_;
+  Rect window_;
+  Progress progress_;
+  std::vector<std::string> warned_;  // variables whose NaN has been reported
+  RunStats stats_;
+};
+
+// The frames to compute: those asked for, those that an input sequence has, or one.
+std::vector<int> choose_frames(const RenderOptions& options);
+
+}  // namespace pse::app

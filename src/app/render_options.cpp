@@ -1,0 +1,148 @@
+// Reading the arguments of `pse render`.
+#include "app/render_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "image/sequence.h"
+
+namespace pse::app {
+namespace {
+
+bool is_variable_name(std::string_view text) {
+  const auto letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  return !text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) == 0 &&
+         std::all_of(text.begin(), text.end(), letter);
+}
+
+// RES, CLIP and XFORM may stand among the arguments as the 2002 chapter's special parameters: they are options.
+bool take_special(const std::string& name, const std::string& value, Arguments& arguments) {
+  for (const auto& [special, option] : {std::pair{"RES", "res"}, {"CLIP", "clip"}, {"XFORM", "xform"}}) {
+    if (name != special) continue;
+    arguments.options[option] = {{value, name}};
+    return true;
+  }
+  return false;
+}
+
+// Sorts the arguments into program, images and knobs.
+void sort_words(RenderOptions& options, Arguments& arguments) {
+  for (const std::string& word : arguments.positionals) {
+    const std::size_t equals = word.find('=');
+    const std::string name = word.substr(0, equals);
+    if (equals == std::string::npos || !is_variable_name(name)) {
+      if (options.program.empty())
+        options.program = word;
+      else
+        options.images.push_back({"", word});
+    } else if (std::isupper(static_cast<unsigned char>(name.front())) != 0) {
+      if (!take_special(name, word.substr(equals + 1), arguments)) options.knob_words.push_back(word);
+    } else {
+      if (word.size() == equals + 1) throw usage_error(fmt::format("`{}` names no image", word));
+      options.images.push_back({name, word.substr(equals + 1)});
+    }
+  }
+  if (options.program.empty())
+    throw usage_error("render needs a program", "pse render PROGRAM -o FILE");
+}
+
+void check_images(const RenderOptions& options) {
+  std::vector<std::string> names;
+  int standard_inputs = options.program == "-" ? 1 : 0;
+  for (const ImageRequest& image : options.images) {
+    standard_inputs += image.file == "-" ? 1 : 0;
+    if (std::find(names.begin(), names.end(), image.name) != names.end())
+      throw usage_error(image.name.empty() ? fmt::format("`{}` is the second image without a name", image.file)
+                                           : fmt::format("two images are called `{}`", image.name),
+                        image.name.empty() ? fmt::format("give it one: bg={}", image.file) : "");
+    names.push_back(image.name);
+  }
+  if (standard_inputs > 1) throw usage_error("standard input can be read only once");
+}
+
+std::vector<OutputRequest> output_requests(const Arguments& arguments) {
+  std::vector<OutputRequest> outputs;
+  int standard_outputs = 0;
+  for (const OptionValue& value : arguments.all("output")) {
+    OutputRequest output{{}, value.text};
+    const std::size_t equals = value.text.find('=');
+    if (equals != std::string::npos) {
+      const std::vector<std::string> names = split(value.text.substr(0, equals), ",");
+      if (std::all_of(names.begin(), names.end(), is_variable_name) && !names.empty())
+        output = {names, value.text.substr(equals + 1)};
+    }
+    if (output.file.empty()) throw usage_error(fmt::format("{}: `{}` names no file", value.origin, value.text));
+    if (const auto pattern = image::canonical_pattern(output.file); !pattern) throw usage_error(pattern.error());
+    standard_outputs += output.file == "-" ? 1 : 0;
+    for (const OutputRequest& other : outputs)
+      if (other.file == output.file) throw usage_error(fmt::format("two outputs go to `{}`", output.file));
+    outputs.push_back(std::move(output));
+  }
+  if (standard_outputs > 1) throw usage_error("only one output can go to standard output");
+  if (const auto layers = arguments.value("layers"))
+    for (OutputRequest& output : outputs)
+      if (output.variables.empty()) output.variables = split(layers->text, ", ");
+  return outputs;
+}
+
+void read_write_options(const Arguments& arguments, RenderOptions& options) {
+  image::WriteOptions& write = options.write;
+  write.format = arguments.text_or("format", "");
+  write.compression = *image::compression_from_name(arguments.text_or("compression", "zip"));
+  write.working = *image::colour_space_from_name(arguments.text_or("colorspace", "lin_rec709"));
+  const std::string display = arguments.text_or("display", "srgb");
+  write.tone = *image::tone_from_name(display == "none" ? "raw" : display);
+  write.bits = arguments.text_or("bits", "8") == "16" ? 16 : 8;
+  if (arguments.has("tiled")) write.tile_width = write.tile_height = 64;
+  options.nan = *image::nan_policy_from_name(arguments.text_or("nan", "keep"));
+  if (arguments.has("half") && arguments.has("float")) throw usage_error("--half and --float exclude each other");
+  if (arguments.has("half")) options.storage = image::PixelType::float16;
+  if (arguments.has("float")) options.storage = image::PixelType::float32;
+}
+
+}  // namespace
+
+RenderOptions render_options(const Session& session) {
+  Arguments arguments = session.arguments;
+  RenderOptions options;
+  sort_words(options, arguments);
+  check_images(options);
+  options.outputs = output_requests(arguments);
+
+  // The picture.
+  if (const auto value = arguments.value("res")) options.resolution = parse_resolution(*value);
+  options.clip = arguments.value("clip");
+  if (const auto value = arguments.value("xform")) {
+    options.transform = plane_transform(parse_numbers(*value));
+    if (!options.transform)
+      throw usage_error(fmt::format("{} takes 6, 9 or 16 numbers, not `{}`", value->origin, value->text),
+                        "2, 0, 0.5, 0, 2, 0 scales by 2 and moves x by 0.5");
+  }
+  if (const auto value = arguments.value("frames")) {
+    const auto frames = image::parse_frames(value->text);
+    if (!frames) throw usage_error(fmt::format("{}: {}", value->origin, frames.error()), "for example: 1-100, 1-100x5, 1,5,9");
+    options.frames = *frames;
+  }
+  if (const auto value = arguments.value("fps")) options.fps = parse_number(*value, 1e-3, 1e6);
+  if (const auto value = arguments.value("seed")) options.seed = static_cast<std::uint32_t>(parse_integer(*value, 0, 1 << 24));
+
+  // How it is computed.
+  if (const auto value = arguments.value("threads")) options.threads = parse_integer(*value, 0, 1024);
+  if (const auto value = arguments.value("tile")) options.tile = parse_integer(*value, 1, 4096);
+  if (const auto value = arguments.value("width")) options.width = parse_integer(*value, 0, 16);
+  options.interpret = arguments.has("interpret");
+  options.optimize = !arguments.has("no-optimize");
+  options.cache = !arguments.has("no-cache");
+
+  // How it is stored.
+  read_write_options(arguments, options);
+  options.resume = arguments.has("resume");
+  options.provenance = !arguments.has("no-provenance");
+  if (options.resume && !options.provenance)
+    throw usage_error("--resume needs the provenance that --no-provenance leaves out");
+  return options;
+}
+
+}  // namespace pse::app

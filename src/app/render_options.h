@@ -1,0 +1,53 @@
+// The arguments of `pse render`, understood.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/session.h"
+#include "app/values.h"
+#include "image/nan_policy.h"
+#include "image/writer.h"
+#include "stream/image_plane.h"
+
+namespace pse::app {
+
+// `fg=ball.%04d.exr`, or a bare name.
+struct ImageRequest {
+  std::string name;  // empty: its channels are bare names
+  std::string file;  // may be a pattern
+};
+
+// `-o out.exr`, `-o heat=heat.exr`, `-o N,P=data.exr`.
+struct OutputRequest {
+  std::vector<std::string> variables;  // empty: what the format usually holds
+  std::string file;                    // may be a pattern; "-" is standard output
+};
+
+struct RenderOptions {
+  std::string program;
+  std::vector<ImageRequest> images;
+  std::vector<std::string> knob_words;  // Name=VALUE
+  std::vector<OutputRequest> outputs;
+
+  std::vector<int> frames;  // empty: not given
+  std::optional<Resolution> resolution;
+  std::optional<OptionValue> clip;
+  std::optional<PlaneTransform> transform;
+  double fps = 24;
+  std::uint32_t seed = 0;
+
+  int threads = 0, tile = 0, width = 0;
+  bool interpret = false, optimize = true, cache = true;
+
+  image::WriteOptions write;
+  std::optional<image::PixelType> storage;  // --half, --float
+  image::NanPolicy nan = image::NanPolicy::keep;
+  bool resume = false, provenance = true;
+};
+
+// Throws Failure (usage).
+RenderOptions render_options(const Session& session);
+
+}  // namespace pse::app

@@ -1,0 +1,41 @@
+// SIGINT and SIGTERM stop a job cleanly, SIGUSR1 asks for a snapshot. A thread of its own waits for them, so nothing
+// happens inside a signal handler.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "stream/program.h"
+
+namespace pse::app {
+
+class Signals {
+ public:
+  // Blocks the signals for this thread and those it starts from now on; create it before any other thread.
+  Signals();
+  ~Signals();
+  Signals(const Signals&) = delete;
+  Signals& operator=(const Signals&) = delete;
+
+  // While a run is watched, SIGINT and SIGTERM cancel it, and only a second one ends the process at once. While none
+  // is, they end the process: nothing is half written then that has a name.
+  void watch(RunStatus* run);
+  // The signal that asked to stop, or 0.
+  int stop_signal() const { return stop_signal_; }
+  // Whether a snapshot was asked for since the last call.
+  bool take_snapshot_request() { return snapshot_.exchange(false); }
+
+ private:
+  void wait(const std::stop_token& stop);
+  void stop_run(int signal);
+
+  std::mutex mutex_;  // of run_
+  RunStatus* run_ = nullptr;
+  std::atomic<int> stop_signal_{0};
+  std::atomic<bool> snapshot_{false};
+  std::jthread thread_;
+};
+
+}  // namespace pse::app

@@ -1,0 +1,36 @@
+// The stored pictures that a program looks up with texture().
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/session.h"
+#include "codegen/kernel.h"
+#include "image/texture.h"
+#include "lower/lower.h"
+
+namespace pse::app {
+
+class Textures {
+ public:
+  // Files are looked for as named, beside the program, and on the search path.
+  Textures(const Session& session, const std::string& program_path, image::ColourSpace working);
+
+  // Lets the lowering ask for a texture's components.
+  void answer(LowerHost& host) const;
+  // Loads what the module calls. Throws Failure (input).
+  void load(const ir::Module& module);
+  // What the module's externals are bound to; valid as long as this object.
+  std::vector<ExternalFunction> functions() const;
+  // Files loaded, with their identities.
+  std::vector<std::pair<std::string, std::string>> identities() const { return identities_; }
+
+ private:
+  std::shared_ptr<image::TextureCache> cache_;
+  std::function<std::string(const std::string&)> resolve_;
+  std::vector<std::unique_ptr<image::TextureCall>> calls_;  // one per external of the module
+  std::vector<std::pair<std::string, std::string>> identities_;
+};
+
+}  // namespace pse::app

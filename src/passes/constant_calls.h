@@ -27,7 +27,7 @@ class ConstantCalls {
   const ir::Module& module_;
   ir::Interpreter interpreter_;
   std::vector<Size> sizes_;
-  double work_left_ = 2e7;  // instructions, all calls together: some tenths of a second
+  double work_left_ = 3e6;  // instructions, all calls together: some hundredths of a second
 };
 
 }  // namespace pse::passes

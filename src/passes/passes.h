@@ -51,8 +51,15 @@ void assign_rates(ir::Module& module);
 // hoist_frame.cpp: cheap work of rate frame leaves the ifs and loops of rate sample around it. Needs rates.
 void hoist_frame(ir::Module& module);
 
+// compact_values.cpp: values numbered in the order of their definition, without gaps.
+void compact_values(ir::Module& module);
+
 // split.cpp: cuts the program into what is done per frame and per sample.
 SplitModule split(ir::Module module);
+// After a split: what the two functions do not need. Slots and arrays keep their numbers.
+void remove_dead(SplitModule& split);
+// Likewise rates: those of arrays stay, since only the whole program could tell them.
+void assign_rates(SplitModule& split);
 // Everything to the sample: what a program means without the cut.
 SplitModule split_nothing(ir::Module module);
 

@@ -37,6 +37,17 @@ SplitModule run_pipeline(ir::Module module, const PipelineOptions& options) {
   }
   SplitModule result = split(std::move(module));
   after("split", result.module);
+
+  if (options.optimize) {
+    // The slots' decoding, and what both functions hold a copy of.
+    run("fold", fold, result.module);
+    run("share", share, result.module);
+    remove_dead(result);
+    after("remove-dead", result.module);
+  }
+  run("compact", compact_values, result.module);
+  assign_rates(result);
+  after("rates", result.module);
   return result;
 }
 

@@ -108,6 +108,22 @@ void renumber_inputs(Region& region, const std::vector<std::int32_t>& number) {
 
 }  // namespace
 
+void remove_dead(SplitModule& split) {
+  Function& sample = split.module.main();
+  drop_unused(sample);
+  std::vector<bool> observed(sample.arrays.size(), false);
+  find_arrays_read(sample.body, observed);
+  drop_unused(split.module.functions[split.frame], observed);
+}
+
+void assign_rates(SplitModule& split) {
+  for (Function& function : split.module.functions) {
+    std::vector<bool> of_sample;
+    for (const ir::Array& array : function.arrays) of_sample.push_back(array.rate == Rate::sample);
+    assign_rates(split.module, function, of_sample);
+  }
+}
+
 SplitModule split_nothing(ir::Module module) {
   SplitModule result;
   result.first_slot = static_cast<std::uint32_t>(module.inputs.size());
@@ -160,11 +176,7 @@ SplitModule split(ir::Module module) {
   module.functions.push_back(std::move(frame));
   result.module = std::move(module);
 
-  // The two functions have rates of their own: a slot is an input of rate frame.
-  for (const std::size_t function : {std::size_t{result.module.entry}, std::size_t{result.frame}}) {
-    std::vector<bool> fixed = of_sample;
-    assign_rates(result.module, result.module.functions[function], fixed);
-  }
+  assign_rates(result);
   return result;
 }
 

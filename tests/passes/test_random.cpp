@@ -12,7 +12,7 @@
 namespace pse::passes {
 namespace {
 
-constexpr int modules = 1500;
+constexpr int modules = 800;
 constexpr int samples = 4;
 
 test::RandomIrOptions options_of(std::uint64_t seed) {

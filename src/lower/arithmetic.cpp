@@ -142,11 +142,8 @@ ir::Value Lowering::scalar_op(BinaryOp op, ir::Value a, ir::Value b) {
     case BinaryOp::subtract: return emit(ir::Op::fsub, {a, b});
     case BinaryOp::multiply: return emit(ir::Op::fmul, {a, b});
     case BinaryOp::divide: return emit(ir::Op::fdiv, {a, b});
-    case BinaryOp::modulo: {
-      // a - b floor(a / b): the sign of b, as a wheel turns.
-      const ir::Value turns = emit(ir::Op::ffloor, {emit(ir::Op::fdiv, {a, b})});
-      return emit(ir::Op::fsub, {a, emit(ir::Op::fmul, {b, turns})});
-    }
+    case BinaryOp::modulo:
+      return builtins_->emit(*builder_, {.name = "mod", .arguments = {{a}, {b}}, .named = {}})->front();
     default: return power(a, b);
   }
 }

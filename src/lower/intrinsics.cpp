@@ -7,10 +7,9 @@ namespace pse::lower {
 
 namespace {
 
-constexpr const char* names[] = {"dot",       "cross", "transpose", "count", "size",
-                                 "sum",       "product", "min",  "max",   "abs",       "select", "any",
-                                 "all",       "array",   "texture", "number", "vector", "identity",
-                                 "isnan",     "isfinite"};
+constexpr const char* names[] = {"length", "norm", "transpose", "count", "size",    "min",    "max",   "select",
+                                 "any",    "all",  "array",     "texture", "number", "vector", "identity",
+                                 "isnan",  "isfinite"};
 
 }  // namespace
 
@@ -22,18 +21,7 @@ bool Lowering::is_intrinsic(const std::string& name) const {
 
 std::vector<std::string> Lowering::intrinsic_names() const { return {std::begin(names), std::end(names)}; }
 
-Typed Lowering::intrinsic_dot(const Typed& a, const Typed& b, const Span& span) {
-  if (a.components() != b.components()) {
-    error("shapes", span, "`dot` needs two vectors of one length, these are " + describe(a) + " and " + describe(b));
-    return {};
-  }
-  ir::Value sum = emit(ir::Op::fmul, {a.parts[0], b.parts[0]});
-  for (std::size_t i = 1; i < a.parts.size(); ++i)
-    sum = emit(ir::Op::fadd, {sum, emit(ir::Op::fmul, {a.parts[i], b.parts[i]})});
-  return number(sum);
-}
-
-// min, max, sum, product, any, all: over the arguments component by component, or over one vector's components.
+// min, max, any, all: over the arguments component by component, or over one vector's components.
 Typed Lowering::intrinsic_fold(const std::string& name, std::vector<CallArgument>& arguments, const Span& span) {
   if (arguments.empty()) {
     error("argument-count", span, "`" + name + "` needs at least one argument");
@@ -42,8 +30,6 @@ Typed Lowering::intrinsic_fold(const std::string& name, std::vector<CallArgument
   const auto fold = [&](ir::Value a, ir::Value b) {
     if (name == "min") return emit(ir::Op::fmin, {a, b});
     if (name == "max") return emit(ir::Op::fmax, {a, b});
-    if (name == "sum") return emit(ir::Op::fadd, {a, b});
-    if (name == "product") return emit(ir::Op::fmul, {a, b});
     return emit(name == "all" ? ir::Op::band : ir::Op::bor, {a, b});
   };
   const bool logical = name == "any" || name == "all";
@@ -57,7 +43,7 @@ Typed Lowering::intrinsic_fold(const std::string& name, std::vector<CallArgument
     if (logical)
       for (ir::Value& part : argument.value.parts) part = emit(ir::Op::fne, {part, constant(0)});
   }
-  if (arguments.size() == 1 || logical || name == "sum" || name == "product") {
+  if (arguments.size() == 1 || logical) {
     // Everything into one number.
     ir::Value result = ir::no_value;
     for (const CallArgument& argument : arguments)
@@ -171,10 +157,7 @@ Typed Lowering::intrinsic_texture(std::vector<CallArgument>& arguments, const Sp
 
 Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument>& arguments, const Span& span) {
   if (name == "texture") return intrinsic_texture(arguments, span);
-  if (name == "min" || name == "max" || name == "sum" || name == "product" || name == "any" || name == "all") {
-    if (!((name == "sum") && arguments.size() == 1 && arguments.front().value.kind == Kind::array))
-      return intrinsic_fold(name, arguments, span);
-  }
+  if (name == "min" || name == "max" || name == "any" || name == "all") return intrinsic_fold(name, arguments, span);
   const auto needs = [&](std::size_t count) {
     if (arguments.size() == count) return true;
     error("argument-count", span, "`" + name + "` takes " + std::to_string(count) + " argument" +
@@ -202,25 +185,6 @@ Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument
       result.parts[i] = emit(ir::Op::select, {condition.parts.front(), a.parts[i], b.parts[i]});
     return result;
   }
-  if (name == "dot") {
-    if (!needs(2)) return {};
-    const Typed a = to_number(arguments[0].value), b = to_number(arguments[1].value);
-    if (!a.is_numeric() || !b.is_numeric() || a.kind == Kind::matrix) return refuse("two vectors");
-    return intrinsic_dot(a, b, span);
-  }
-  if (name == "cross") {
-    if (!needs(2)) return {};
-    const Typed &a = arguments[0].value, &b = arguments[1].value;
-    if (a.kind != Kind::vector || a.rows != 3 || b.kind != Kind::vector || b.rows != 3)
-      return refuse("two vectors of 3");
-    std::vector<ir::Value> parts;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-      parts.push_back(emit(ir::Op::fsub, {emit(ir::Op::fmul, {a.parts[j], b.parts[k]}),
-                                          emit(ir::Op::fmul, {a.parts[k], b.parts[j]})}));
-    }
-    return vector(std::move(parts));
-  }
   if (name == "array") {
     if (!needs(1)) return {};
     const auto capacity = arguments[0].value.kind == Kind::number ? known(arguments[0].value.parts.front()) : std::nullopt;
@@ -235,10 +199,10 @@ Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument
     return refuse("an array or a vector");
   }
   if (!value.is_numeric()) return refuse("a number or a vector");
-  if (name == "abs") {
-    Typed result = value;
-    for (ir::Value& part : result.parts) part = emit(ir::Op::fabs, {part});
-    return result;
+  if (name == "length" || name == "norm") {
+    if (value.kind == Kind::number) return number(emit(ir::Op::fabs, {value.parts.front()}));
+    const auto square = builtins_->emit(*builder_, {.name = "dot", .arguments = {value.parts, value.parts}, .named = {}});
+    return number(emit(ir::Op::fsqrt, {square->front()}));
   }
   if (name == "isnan" || name == "isfinite") {
     ir::Value result = ir::no_value;

@@ -106,7 +106,6 @@ class Lowering {
   bool is_intrinsic(const std::string& name) const;
   std::vector<std::string> intrinsic_names() const;
   Typed call_intrinsic(const std::string& name, std::vector<CallArgument>& arguments, const Span& span);
-  Typed intrinsic_dot(const Typed& a, const Typed& b, const Span& span);
   Typed intrinsic_texture(std::vector<CallArgument>& arguments, const Span& span);
   Typed intrinsic_fold(const std::string& name, std::vector<CallArgument>& arguments, const Span& span);
 

@@ -216,7 +216,7 @@ class RandomProgram {
   }
 
   std::string noise(int components, int depth) {
-    static constexpr std::array<std::string_view, 6> of_number = {"Noise", "snoise", "unoise", "noise1985", "hash", "Noise"};
+    static constexpr std::array<std::string_view, 6> of_number = {"Noise", "snoise", "unoise", "unoise", "hash", "Noise"};
     const int n = 1 + below(3);
     const std::string argument = value(n, depth > 1 ? 1 : depth);
     if (components == 3 && chance(60)) {

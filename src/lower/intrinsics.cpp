@@ -7,7 +7,7 @@ namespace pse::lower {
 
 namespace {
 
-constexpr const char* names[] = {"length", "norm", "transpose", "count", "size",    "min",    "max",   "select",
+constexpr const char* names[] = {"transpose", "count", "size",    "min",    "max",   "select",
                                  "any",    "all",  "array",     "texture", "number", "vector", "identity",
                                  "isnan",  "isfinite"};
 
@@ -199,11 +199,6 @@ Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument
     return refuse("an array or a vector");
   }
   if (!value.is_numeric()) return refuse("a number or a vector");
-  if (name == "length" || name == "norm") {
-    if (value.kind == Kind::number) return number(emit(ir::Op::fabs, {value.parts.front()}));
-    const auto square = builtins_->emit(*builder_, {.name = "dot", .arguments = {value.parts, value.parts}, .named = {}});
-    return number(emit(ir::Op::fsqrt, {square->front()}));
-  }
   if (name == "isnan" || name == "isfinite") {
     ir::Value result = ir::no_value;
     for (const ir::Value part : value.parts) {

@@ -22,7 +22,8 @@ void Diagnostics::error(std::string code, Span span, std::string message, std::s
   add({Severity::error, std::move(code), std::move(message), span, {}, std::move(suggestion)});
 }
 
-void Diagnostics::warning(std::string code, Span span, std::string message, std::string suggestion) {
+void Diagnostics::warning(std::string code, Span span, std::string message,
+                          std::string suggestion) {
   add({Severity::warning, std::move(code), std::move(message), span, {}, std::move(suggestion)});
 }
 
@@ -30,17 +31,19 @@ void Diagnostics::sort() {
   const auto place = [](const Diagnostic& d) {
     return std::tuple(d.span.file, d.span.begin, d.span.end, -static_cast<int>(d.severity));
   };
-  std::stable_sort(all_.begin(), all_.end(), [&](const Diagnostic& a, const Diagnostic& b) { return place(a) < place(b); });
+  std::stable_sort(all_.begin(), all_.end(),
+                   [&](const Diagnostic& a, const Diagnostic& b) { return place(a) < place(b); });
 
   // Repetitions share their place, but others found there may stand between them.
   const auto same = [](const Diagnostic& a, const Diagnostic& b) {
-    return a.severity == b.severity && a.code == b.code && a.message == b.message && a.span == b.span &&
-           a.expected == b.expected && a.suggestion == b.suggestion;
+    return a.severity == b.severity && a.code == b.code && a.message == b.message &&
+           a.span == b.span && a.expected == b.expected && a.suggestion == b.suggestion;
   };
   std::vector<Diagnostic> unique;
   for (Diagnostic& diagnostic : all_) {
     bool repeated = false;
-    for (auto at = unique.rbegin(); at != unique.rend() && at->span == diagnostic.span && !repeated; ++at)
+    for (auto at = unique.rbegin(); at != unique.rend() && at->span == diagnostic.span && !repeated;
+         ++at)
       repeated = same(*at, diagnostic);
     if (repeated)
       errors_ -= diagnostic.severity == Severity::error;
@@ -52,8 +55,8 @@ void Diagnostics::sort() {
 
 namespace {
 
-// The Damerau-Levenshtein distance in its "optimal string alignment" form (one letter inserted, deleted, replaced, or
-// two neighbours swapped), not counting case; gives up with `bound` + 1.
+// The Damerau-Levenshtein distance in its "optimal string alignment" form (one letter inserted,
+// deleted, replaced, or two neighbours swapped), not counting case; gives up with `bound` + 1.
 int edit_distance(std::string_view a, std::string_view b, int bound) {
   const int n = static_cast<int>(a.size()), m = static_cast<int>(b.size());
   if (n - m > bound || m - n > bound) return bound + 1;
@@ -70,7 +73,8 @@ int edit_distance(std::string_view a, std::string_view b, int bound) {
       const auto at = static_cast<std::size_t>(j);
       const bool equal = letter(a, i - 1) == letter(b, j - 1);
       int best = std::min({previous[at] + 1, current[at - 1] + 1, previous[at - 1] + !equal});
-      if (i > 1 && j > 1 && letter(a, i - 1) == letter(b, j - 2) && letter(a, i - 2) == letter(b, j - 1))
+      if (i > 1 && j > 1 && letter(a, i - 1) == letter(b, j - 2) &&
+          letter(a, i - 2) == letter(b, j - 1))
         best = std::min(best, before[at - 2] + 1);
       current[at] = best;
       smallest = std::min(smallest, best);

@@ -10,9 +10,12 @@ namespace {
 
 const char* name_of(Severity severity) {
   switch (severity) {
-    case Severity::note: return "note";
-    case Severity::warning: return "warning";
-    case Severity::error: return "error";
+    case Severity::note:
+      return "note";
+    case Severity::warning:
+      return "warning";
+    case Severity::error:
+      return "error";
   }
   return "error";
 }
@@ -50,7 +53,8 @@ std::string print_json(const Diagnostics& diagnostics, const SourceMap& sources)
       entry["end_line"] = end.line;
       entry["end_column"] = end.column;
     } else {
-      for (const char* key : {"file", "line", "column", "end_line", "end_column"}) entry[key] = nullptr;
+      for (const char* key : {"file", "line", "column", "end_line", "end_column"})
+        entry[key] = nullptr;
     }
     entry["expected"] = utf8_repaired(diagnostic.expected);
     entry["suggestion"] = utf8_repaired(diagnostic.suggestion);

@@ -1,4 +1,5 @@
-// Diagnostics for a terminal: place and message, the source line, a caret under the place, and what to do.
+// Diagnostics for a terminal: place and message, the source line, a caret under the place, and what
+// to do.
 #include <algorithm>
 
 #include "diag/diagnostics.h"
@@ -15,10 +16,11 @@ struct Style {
   const char *error = "", *warning = "", *note = "", *bold = "", *dim = "", *reset = "";
 };
 constexpr Style plain_style{};
-constexpr Style colour_style{"\x1b[1;31m", "\x1b[1;35m", "\x1b[1;36m", "\x1b[1m", "\x1b[2m", "\x1b[0m"};
+constexpr Style colour_style{"\x1b[1;31m", "\x1b[1;35m", "\x1b[1;36m",
+                             "\x1b[1m",    "\x1b[2m",    "\x1b[0m"};
 
-// One character as shown: tabs widened, control characters and invalid bytes replaced, so that no text can send
-// escape sequences to the terminal.
+// One character as shown: tabs widened, control characters and invalid bytes replaced, so that no
+// text can send escape sequences to the terminal.
 struct Glyph {
   std::string text;
   int columns = 1;
@@ -32,7 +34,8 @@ Glyph glyph_at(std::string_view line, std::size_t at, std::size_t& length) {
   const bool control = character.code < 0x20 || (character.code >= 0x7f && character.code < 0xa0);
   const bool steering = (character.code >= 0x200b && character.code <= 0x200f) ||
                         (character.code >= 0x2028 && character.code <= 0x202e) ||
-                        (character.code >= 0x2066 && character.code <= 0x2069) || character.code == 0xfeff;
+                        (character.code >= 0x2066 && character.code <= 0x2069) ||
+                        character.code == 0xfeff;
   if (!character.valid || control || steering) {
     utf8_append(glyph.text, 0xfffd);
   } else {
@@ -52,7 +55,8 @@ Excerpt excerpt_of(std::string_view line, std::size_t begin, std::size_t end) {
   // Only bytes near the mark can be shown: a line may be megabytes long.
   constexpr std::size_t reach = 4 * excerpt_columns;
   std::size_t first = begin > reach ? begin - reach : 0;
-  while (first > 0 && first < begin && (static_cast<unsigned char>(line[first]) & 0xc0) == 0x80) ++first;
+  while (first > 0 && first < begin && (static_cast<unsigned char>(line[first]) & 0xc0) == 0x80)
+    ++first;
 
   // Glyphs with their columns; a tab reaches to the next multiple of 8.
   std::vector<Glyph> glyphs;
@@ -95,7 +99,8 @@ Excerpt excerpt_of(std::string_view line, std::size_t begin, std::size_t end) {
   }
   if (dots_after) excerpt.text += "...";
   excerpt.mark_begin = shown_begin < 0 ? shown : shown_begin;
-  excerpt.mark_columns = std::clamp(mark_end - mark_begin, 1, std::max(1, shown - excerpt.mark_begin));
+  excerpt.mark_columns =
+      std::clamp(mark_end - mark_begin, 1, std::max(1, shown - excerpt.mark_begin));
   return excerpt;
 }
 
@@ -107,13 +112,16 @@ std::string safe(std::string_view text) {
   return shown;
 }
 
-void print_place(std::string& out, const Diagnostic& diagnostic, const SourceMap& sources, const Style& style) {
+void print_place(std::string& out, const Diagnostic& diagnostic, const SourceMap& sources,
+                 const Style& style) {
   const SourceFile& file = sources.file(diagnostic.span.file);
   const LineColumn begin = file.position(diagnostic.span.begin);
   const LineColumn end = file.position(diagnostic.span.end);
   const std::string_view line = file.line(begin.line);
   const auto first = std::min(static_cast<std::size_t>(begin.column) - 1, line.size());
-  const auto last = end.line == begin.line ? std::min(static_cast<std::size_t>(end.column) - 1, line.size()) : line.size();
+  const auto last = end.line == begin.line
+                        ? std::min(static_cast<std::size_t>(end.column) - 1, line.size())
+                        : line.size();
 
   // ` 12 | source line`, and below it the caret.
   const Excerpt excerpt = excerpt_of(line, first, last);
@@ -143,16 +151,24 @@ std::string print_text(const Diagnostics& diagnostics, const SourceMap& sources,
       const LineColumn at = file.position(diagnostic.span.begin);
       const std::string_view before = file.line(at.line).substr(
           0, std::min(static_cast<std::size_t>(at.column) - 1, file.line(at.line).size()));
-      out += safe(file.name) + ":" + std::to_string(at.line) + ":" + std::to_string(utf8_count(before) + 1) + ": ";
+      out += safe(file.name) + ":" + std::to_string(at.line) + ":" +
+             std::to_string(utf8_count(before) + 1) + ": ";
     }
     switch (diagnostic.severity) {
-      case Severity::error: out += std::string(style.error) + "error: "; break;
-      case Severity::warning: out += std::string(style.warning) + "warning: "; break;
-      case Severity::note: out += std::string(style.note) + "note: "; break;
+      case Severity::error:
+        out += std::string(style.error) + "error: ";
+        break;
+      case Severity::warning:
+        out += std::string(style.warning) + "warning: ";
+        break;
+      case Severity::note:
+        out += std::string(style.note) + "note: ";
+        break;
     }
     out += style.reset;
     out += style.bold + safe(diagnostic.message) + style.reset;
-    if (!diagnostic.code.empty()) out += std::string(style.dim) + " [" + safe(diagnostic.code) + "]" + style.reset;
+    if (!diagnostic.code.empty())
+      out += std::string(style.dim) + " [" + safe(diagnostic.code) + "]" + style.reset;
     out += "\n";
     if (diagnostic.span.valid()) print_place(out, diagnostic, sources, style);
     if (!diagnostic.expected.empty()) out += "       expected: " + safe(diagnostic.expected) + "\n";

@@ -42,7 +42,8 @@ std::string_view SourceMap::text(const Span& span) const {
 std::string SourceMap::describe(const Span& span) const {
   if (!span.valid()) return "<unknown>";
   const LineColumn place = position(span);
-  return files_[span.file].name + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
+  return files_[span.file].name + ":" + std::to_string(place.line) + ":" +
+         std::to_string(place.column);
 }
 
 }  // namespace pse

@@ -33,7 +33,9 @@ Utf8Character utf8_decode(std::string_view text, std::size_t at) {
 }
 
 void utf8_append(std::string& text, char32_t code) {
-  const auto put = [&](char32_t byte) { text += static_cast<char>(static_cast<unsigned char>(byte)); };
+  const auto put = [&](char32_t byte) {
+    text += static_cast<char>(static_cast<unsigned char>(byte));
+  };
   if (code < 0x80) {
     put(code);
   } else if (code < 0x800) {
@@ -57,14 +59,13 @@ int utf8_columns(char32_t code) {
   struct Range {
     char32_t first, last;
   };
-  static constexpr std::array combining = {Range{0x300, 0x36f}, Range{0x1ab0, 0x1aff},
+  static constexpr std::array combining = {Range{0x300, 0x36f},   Range{0x1ab0, 0x1aff},
                                            Range{0x200b, 0x200f}, Range{0x20d0, 0x20ff},
                                            Range{0xfe00, 0xfe0f}, Range{0xfe20, 0xfe2f}};
-  static constexpr std::array wide = {Range{0x1100, 0x115f},   Range{0x2e80, 0x303e},
-                                      Range{0x3041, 0xa4cf},   Range{0xac00, 0xd7a3},
-                                      Range{0xf900, 0xfaff},   Range{0xfe30, 0xfe6f},
-                                      Range{0xff00, 0xff60},   Range{0xffe0, 0xffe6},
-                                      Range{0x1f300, 0x1faff}, Range{0x20000, 0x3fffd}};
+  static constexpr std::array wide = {
+      Range{0x1100, 0x115f},   Range{0x2e80, 0x303e},  Range{0x3041, 0xa4cf}, Range{0xac00, 0xd7a3},
+      Range{0xf900, 0xfaff},   Range{0xfe30, 0xfe6f},  Range{0xff00, 0xff60}, Range{0xffe0, 0xffe6},
+      Range{0x1f300, 0x1faff}, Range{0x20000, 0x3fffd}};
   for (const Range& range : combining)
     if (code >= range.first && code <= range.last) return 0;
   for (const Range& range : wide)

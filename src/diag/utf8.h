@@ -1,5 +1,6 @@
-// UTF-8 as bytes come: one character at a time, never reading past the end, invalid bytes reported one by one.
-// Used by the lexer (what may stand in a text) and by the printers (columns and carets).
+// UTF-8 as bytes come: one character at a time, never reading past the end, invalid bytes reported
+// one by one. Used by the lexer (what may stand in a text) and by the printers (columns and
+// carets).
 #pragma once
 
 #include <cstddef>
@@ -15,8 +16,8 @@ struct Utf8Character {
   bool valid = false;
 };
 
-// The character that begins at byte `at` of `text`; `at` must be inside. Overlong forms, surrogates and codes above
-// U+10FFFF are invalid.
+// The character that begins at byte `at` of `text`; `at` must be inside. Overlong forms, surrogates
+// and codes above U+10FFFF are invalid.
 Utf8Character utf8_decode(std::string_view text, std::size_t at);
 
 // Appends the character's bytes to `text`.
@@ -25,7 +26,8 @@ void utf8_append(std::string& text, char32_t code);
 // How many characters `text` holds; an invalid byte counts as one.
 std::size_t utf8_count(std::string_view text);
 
-// How many terminal columns the character takes: 0 for a combining mark, 2 for East Asian wide ones, else 1.
+// How many terminal columns the character takes: 0 for a combining mark, 2 for East Asian wide
+// ones, else 1.
 int utf8_columns(char32_t code);
 
 // A copy in which every invalid byte is U+FFFD.

@@ -1,5 +1,6 @@
-// `pse fmt`: statements in pse's one layout. Four columns for each block; a block keeps its braces, or its place on the
-// head's line, where it was written so and fits; comments and single blank lines stay where they were.
+// `pse fmt`: statements in pse's one layout. Four columns for each block; a block keeps its braces,
+// or its place on the head's line, where it was written so and fits; comments and single blank
+// lines stay where they were.
 #include <array>
 
 #include "lang/format_state.h"
@@ -13,14 +14,18 @@ constexpr std::array assign_spellings = {" = ", " += ", " -= ", " *= ", " /= ", 
 constexpr std::size_t step = 4;
 
 bool is_simple(const Stmt& statement) {
-  return std::holds_alternative<AssignStmt>(statement.node) || std::holds_alternative<ExprStmt>(statement.node) ||
-         std::holds_alternative<ReturnStmt>(statement.node) || std::holds_alternative<BreakStmt>(statement.node) ||
-         std::holds_alternative<ContinueStmt>(statement.node) || std::holds_alternative<MovementStmt>(statement.node) ||
+  return std::holds_alternative<AssignStmt>(statement.node) ||
+         std::holds_alternative<ExprStmt>(statement.node) ||
+         std::holds_alternative<ReturnStmt>(statement.node) ||
+         std::holds_alternative<BreakStmt>(statement.node) ||
+         std::holds_alternative<ContinueStmt>(statement.node) ||
+         std::holds_alternative<MovementStmt>(statement.node) ||
          std::holds_alternative<ImportStmt>(statement.node);
 }
 
 bool begins_with_keyword(const Stmt& statement) {
-  return std::holds_alternative<ReturnStmt>(statement.node) || std::holds_alternative<BreakStmt>(statement.node) ||
+  return std::holds_alternative<ReturnStmt>(statement.node) ||
+         std::holds_alternative<BreakStmt>(statement.node) ||
          std::holds_alternative<ContinueStmt>(statement.node);
 }
 
@@ -41,9 +46,9 @@ class Formatter {
   const SourceFile& source_;
   ExpressionFormatter expressions_;
   std::string out_;
-  std::size_t comment_ = 0;         // the next to be printed
-  std::uint32_t last_end_ = 0;      // in the source: where what was printed last ends
-  bool fresh_block_ = true;         // nothing printed yet in this block
+  std::size_t comment_ = 0;     // the next to be printed
+  std::uint32_t last_end_ = 0;  // in the source: where what was printed last ends
+  bool fresh_block_ = true;     // nothing printed yet in this block
 
   // ---- Lines ----
 
@@ -64,7 +69,8 @@ class Formatter {
   }
 
   std::string comment_text(const Comment& comment) const {
-    std::string text = source_.text.substr(comment.span.begin, comment.span.end - comment.span.begin);
+    std::string text =
+        source_.text.substr(comment.span.begin, comment.span.end - comment.span.begin);
     for (char& c : text)
       if (c == '\r' || c == '\f' || c == '\v') c = ' ';
     while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.pop_back();
@@ -84,15 +90,18 @@ class Formatter {
     last_end_ = comment.span.end;
   }
 
-  // At the end of an indented block: the comments that stand deeper than the block's head, up to `limit`.
+  // At the end of an indented block: the comments that stand deeper than the block's head, up to
+  // `limit`.
   void comments_inside(std::uint32_t limit, std::uint32_t head_column, std::size_t indent) {
-    while (comment_before(limit) && column_of(program_.comments[comment_].span.begin) > head_column) own_line_comment(indent);
+    while (comment_before(limit) && column_of(program_.comments[comment_].span.begin) > head_column)
+      own_line_comment(indent);
   }
 
   // The column, from 0, of a place in the source.
   std::uint32_t column_of(std::uint32_t offset) const {
     std::uint32_t column = 0;
-    for (std::uint32_t at = source_.line_starts[static_cast<std::size_t>(line_of(offset)) - 1]; at < offset; ++at)
+    for (std::uint32_t at = source_.line_starts[static_cast<std::size_t>(line_of(offset)) - 1];
+         at < offset; ++at)
       column += source_.text[at] == '\t' ? 8 - column % 8 : 1;
     return column;
   }
@@ -101,13 +110,15 @@ class Formatter {
   std::uint32_t line_column(std::uint32_t offset) const {
     std::uint32_t at = source_.line_starts[static_cast<std::size_t>(line_of(offset)) - 1];
     if (at == 0 && source_.text.starts_with("\xef\xbb\xbf")) at = 3;
-    while (at < offset && (source_.text[at] == ' ' || source_.text[at] == '\t' || source_.text[at] == '\r' ||
-                           source_.text[at] == '\f' || source_.text[at] == '\v'))
+    while (at < offset &&
+           (source_.text[at] == ' ' || source_.text[at] == '\t' || source_.text[at] == '\r' ||
+            source_.text[at] == '\f' || source_.text[at] == '\v'))
       ++at;
     return column_of(at);
   }
 
-  // The comment behind a statement or a head that ends at `end`, when it stands on the same line and before `limit`.
+  // The comment behind a statement or a head that ends at `end`, when it stands on the same line
+  // and before `limit`.
   void end_line(std::uint32_t end, std::uint32_t limit) {
     last_end_ = std::max(last_end_, end);
     if (comment_before(limit) && !program_.comments[comment_].own_line &&
@@ -127,7 +138,9 @@ class Formatter {
     std::string clean;
     for (const char c : text) {
       if (c == '\n')
-        while (!clean.empty() && (clean.back() == ' ' || clean.back() == '\t' || clean.back() == '\r')) clean.pop_back();
+        while (!clean.empty() &&
+               (clean.back() == ' ' || clean.back() == '\t' || clean.back() == '\r'))
+          clean.pop_back();
       clean += c;
     }
     out_ += clean;
@@ -164,16 +177,19 @@ class Formatter {
         simple(statement, indent);
       return end_line(statement.span.end, limit);
     }
-    if (const auto* node = std::get_if<IfStmt>(&statement.node)) return print_if(*node, indent, limit);
+    if (const auto* node = std::get_if<IfStmt>(&statement.node))
+      return print_if(*node, indent, limit);
     if (const auto* node = std::get_if<WhileStmt>(&statement.node)) {
       out_ += "while ";
       expression(*node->condition, indent, 2);
-      return body(node->body, statement.span.begin, node->condition->span.end, indent, limit, node->condition->parenthesised);
+      return body(node->body, statement.span.begin, node->condition->span.end, indent, limit,
+                  node->condition->parenthesised);
     }
     if (const auto* node = std::get_if<ForStmt>(&statement.node)) {
       out_ += "for " + node->variable + " in ";
       expression(*node->sequence, indent, 2);
-      return body(node->body, statement.span.begin, node->sequence->span.end, indent, limit, node->sequence->parenthesised);
+      return body(node->body, statement.span.begin, node->sequence->span.end, indent, limit,
+                  node->sequence->parenthesised);
     }
     if (const auto* node = std::get_if<FunctionStmt>(&statement.node)) {
       function_head(*node, indent);
@@ -232,21 +248,24 @@ class Formatter {
       parameters.push_back(Document::row(std::move(row)));
     }
     out_ += "function " + node.name;
-    render(Document::group("(", std::move(parameters), ", ", ")", true), indent, format_width, 2, out_);
+    render(Document::group("(", std::move(parameters), ", ", ")", true), indent, format_width, 2,
+           out_);
   }
 
   void print_if(const IfStmt& node, std::size_t indent, std::uint32_t limit) {
     const std::uint32_t begin = node.branches.front().head.begin;
     for (std::size_t i = 0; i < node.branches.size(); ++i) {
       const IfBranch& branch = node.branches[i];
-      const std::uint32_t next = i + 1 < node.branches.size() ? node.branches[i + 1].head.begin : limit;
+      const std::uint32_t next =
+          i + 1 < node.branches.size() ? node.branches[i + 1].head.begin : limit;
       if (i > 0) {
         // `} else` stays on its line unless comments stand between.
         const bool joined = node.branches[i - 1].body.braces && !comment_before(branch.head.begin);
         if (joined) {
           out_ += ' ';
         } else {
-          if (node.branches[i - 1].body.braces) end_line(node.branches[i - 1].body.span.end, branch.head.begin);
+          if (node.branches[i - 1].body.braces)
+            end_line(node.branches[i - 1].body.span.end, branch.head.begin);
           comments_before(branch.head.begin, indent);
           indent_to(indent);
         }
@@ -264,10 +283,10 @@ class Formatter {
 
   // ---- Blocks ----
 
-  // What a head governs. `begin` and `head_end` are the head's places in the program, `limit` that of the next word behind
-  // the block. With `open` a `}` does not end its line.
-  void body(const Block& block, std::uint32_t begin, std::uint32_t head_end, std::size_t indent, std::uint32_t limit,
-            bool closed, bool open = false) {
+  // What a head governs. `begin` and `head_end` are the head's places in the program, `limit` that
+  // of the next word behind the block. With `open` a `}` does not end its line.
+  void body(const Block& block, std::uint32_t begin, std::uint32_t head_end, std::size_t indent,
+            std::uint32_t limit, bool closed, bool open = false) {
     if (on_one_line(block, closed)) {
       if (!(open && block.braces)) end_line(block.span.end, limit);
       last_end_ = std::max(last_end_, block.span.end);
@@ -296,7 +315,8 @@ class Formatter {
     fresh_block_ = false;
   }
 
-  // Prints a block that was written on its head's line, if it still fits there. `closed`: the head ends in `)` or in a word.
+  // Prints a block that was written on its head's line, if it still fits there. `closed`: the head
+  // ends in `)` or in a word.
   bool on_one_line(const Block& block, bool closed) {
     if (!block.same_line || comment_before(block.span.end) || block.size() > 100) return false;
     for (const StmtPtr& statement : block)
@@ -313,13 +333,15 @@ class Formatter {
     }
     out_ += block.braces ? " }" : "";
 
-    // `if (a) b = 1` and `if a return b` need no colon; `if a: b = 1` reads better with one, and `if (a): -b` would be a
-    // difference without.
+    // `if (a) b = 1` and `if a return b` need no colon; `if a: b = 1` reads better with one, and
+    // `if (a): -b` would be a difference without.
     const std::string_view text = std::string_view(out_).substr(size);
     const char first = text.size() > 1 ? text[1] : '(';
-    const bool letter = (first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z') || first == '_';
+    const bool letter =
+        (first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z') || first == '_';
     const bool plain = block.size() == 1 && begins_with_keyword(*block[0]);
-    if (!block.braces && !plain && (!closed || !letter || text.starts_with(" then"))) out_.insert(size, ":");
+    if (!block.braces && !plain && (!closed || !letter || text.starts_with(" then")))
+      out_.insert(size, ":");
     const bool broken = out_.find('\n', size) != std::string::npos;
     if (last_line_width(out_) <= format_width && !broken) return true;
     out_.resize(size);

@@ -1,4 +1,5 @@
-// Rendering documents: a group that fits stays on its line; else its parts go onto lines of their own.
+// Rendering documents: a group that fits stays on its line; else its parts go onto lines of their
+// own.
 #include "lang/format_document.h"
 
 #include "diag/utf8.h"
@@ -8,14 +9,16 @@ namespace pse::lang {
 namespace {
 
 constexpr std::size_t step = 4;
-constexpr std::size_t shortest = 25;  // a narrower group stays whole: broken, it reads worse than a line too long
+constexpr std::size_t shortest =
+    25;  // a narrower group stays whole: broken, it reads worse than a line too long
 
 std::string trimmed(std::string text) {
   while (!text.empty() && text.back() == ' ') text.pop_back();
   return text;
 }
 
-// How much of a row's parts from `first` on stands on the same line whatever is broken: up to the first group's bracket.
+// How much of a row's parts from `first` on stands on the same line whatever is broken: up to the
+// first group's bracket.
 std::size_t fixed_width(const std::vector<Document>& parts, std::size_t first, std::size_t after) {
   std::size_t width = 0;
   for (std::size_t i = first; i < parts.size(); ++i) {
@@ -45,8 +48,10 @@ const Document* only_group(const Document& document) {
   return only_group(document.parts.back());
 }
 
-// `f(a, [`, the last part's lines, `])`: where all but the last part of a call fits on the line, only that is broken.
-bool break_last_part(const Document& group, std::size_t indent, std::size_t limit, std::size_t after, std::string& out) {
+// `f(a, [`, the last part's lines, `])`: where all but the last part of a call fits on the line,
+// only that is broken.
+bool break_last_part(const Document& group, std::size_t indent, std::size_t limit,
+                     std::size_t after, std::string& out) {
   if (group.open != "(" || group.parts.empty()) return false;
   const Document& last = group.parts.back();
   const Document* inner = only_group(last);
@@ -66,7 +71,8 @@ bool break_last_part(const Document& group, std::size_t indent, std::size_t limi
   return true;
 }
 
-void break_group(const Document& group, std::size_t indent, std::size_t limit, std::size_t after, std::string& out) {
+void break_group(const Document& group, std::size_t indent, std::size_t limit, std::size_t after,
+                 std::string& out) {
   if (break_last_part(group, indent, limit, after, out)) return;
   const std::size_t inner = indent + step;
   const std::string separator = trimmed(group.separator);
@@ -108,8 +114,8 @@ Document Document::row(std::vector<Document> parts) {
   return document;
 }
 
-Document Document::group(std::string open, std::vector<Document> parts, std::string separator, std::string close,
-                         bool fill) {
+Document Document::group(std::string open, std::vector<Document> parts, std::string separator,
+                         std::string close, bool fill) {
   Document document;
   document.kind = Kind::group;
   document.width = open.size() + close.size();
@@ -143,7 +149,8 @@ void render_flat(const Document& document, std::string& out) {
   out += document.close;
 }
 
-void render(const Document& document, std::size_t indent, std::size_t limit, std::size_t after, std::string& out) {
+void render(const Document& document, std::size_t indent, std::size_t limit, std::size_t after,
+            std::string& out) {
   const bool fits = last_line_width(out) + document.width + after <= limit;
   if (fits || document.kind == Document::Kind::text) return render_flat(document, out);
   if (document.kind == Document::Kind::group) {

@@ -1,4 +1,5 @@
-// Expressions in pse's one layout: a space on both sides of an operator, commas where the program has them.
+// Expressions in pse's one layout: a space on both sides of an operator, commas where the program
+// has them.
 #include <array>
 
 #include "lang/format_state.h"
@@ -7,7 +8,7 @@ namespace pse::lang {
 
 namespace {
 
-constexpr std::array binary_spellings = {" + ", " - ", " * ", " / ", " % ", " ^ ", " < ",
+constexpr std::array binary_spellings = {" + ",  " - ", " * ",  " / ",  " % ",  " ^ ",   " < ",
                                          " <= ", " > ", " >= ", " == ", " != ", " and ", " or "};
 
 // A text in straight double quotes.
@@ -15,12 +16,23 @@ std::string quoted(const std::string& value) {
   std::string out = "\"";
   for (const char c : value) {
     switch (c) {
-      case '\n': out += "\\n"; break;
-      case '\t': out += "\\t"; break;
-      case '\r': out += "\\r"; break;
-      case '"': out += "\\\""; break;
-      case '\\': out += "\\\\"; break;
-      default: out += c;
+      case '\n':
+        out += "\\n";
+        break;
+      case '\t':
+        out += "\\t";
+        break;
+      case '\r':
+        out += "\\r";
+        break;
+      case '"':
+        out += "\\\"";
+        break;
+      case '\\':
+        out += "\\\\";
+        break;
+      default:
+        out += c;
     }
   }
   return out + "\"";
@@ -55,7 +67,8 @@ Document ExpressionFormatter::document(const Expr& expr) const {
 
 Document ExpressionFormatter::metadata(const std::vector<MetaEntry>& entries) const {
   std::vector<Document> parts;
-  for (const MetaEntry& entry : entries) parts.push_back(Row().add(entry.name + " = ").add(document(*entry.value)).done());
+  for (const MetaEntry& entry : entries)
+    parts.push_back(Row().add(entry.name + " = ").add(document(*entry.value)).done());
   return Document::group("[[ ", std::move(parts), ", ", " ]]", true);
 }
 
@@ -65,12 +78,18 @@ std::vector<Document> ExpressionFormatter::documents(const std::vector<ExprPtr>&
   return parts;
 }
 
-Document ExpressionFormatter::document(const NumberExpr& node, const Expr&) const { return Document::of(node.spelling); }
-Document ExpressionFormatter::document(const StringExpr& node, const Expr&) const { return Document::of(quoted(node.value)); }
+Document ExpressionFormatter::document(const NumberExpr& node, const Expr&) const {
+  return Document::of(node.spelling);
+}
+Document ExpressionFormatter::document(const StringExpr& node, const Expr&) const {
+  return Document::of(quoted(node.value));
+}
 Document ExpressionFormatter::document(const BoolExpr& node, const Expr&) const {
   return Document::of(node.value ? "true" : "false");
 }
-Document ExpressionFormatter::document(const NameExpr& node, const Expr&) const { return Document::of(node.name); }
+Document ExpressionFormatter::document(const NameExpr& node, const Expr&) const {
+  return Document::of(node.name);
+}
 
 Document ExpressionFormatter::document(const VectorExpr& node, const Expr&) const {
   // Elements are set apart as in the program: by commas, or by white space alone.
@@ -115,11 +134,17 @@ Document ExpressionFormatter::document(const CallExpr& node, const Expr&) const 
     if (!argument.name.empty()) row.add(argument.name + " = ");
     arguments.push_back(row.add(document(*argument.value)).done());
   }
-  return Row().add(document(*node.callee)).add(Document::group("(", std::move(arguments), ", ", ")", true)).done();
+  return Row()
+      .add(document(*node.callee))
+      .add(Document::group("(", std::move(arguments), ", ", ")", true))
+      .done();
 }
 
 Document ExpressionFormatter::document(const IndexExpr& node, const Expr&) const {
-  return Row().add(document(*node.base)).add(Document::group("[", documents(node.indices), ", ", "]", true)).done();
+  return Row()
+      .add(document(*node.base))
+      .add(Document::group("[", documents(node.indices), ", ", "]", true))
+      .done();
 }
 
 Document ExpressionFormatter::document(const MemberExpr& node, const Expr&) const {

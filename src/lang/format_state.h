@@ -1,4 +1,5 @@
-// The formatter's inside: expressions become documents, statements become lines, comments go back to their places.
+// The formatter's inside: expressions become documents, statements become lines, comments go back
+// to their places.
 #pragma once
 
 #include <string>

@@ -1,5 +1,6 @@
-// Balancing brackets. A text in which every bracket has its partner is done in one pass. In any other, a pass that also
-// looks at lines finds those without, and a last one ends each of them where the text goes back to its line's indentation.
+// Balancing brackets. A text in which every bracket has its partner is done in one pass. In any
+// other, a pass that also looks at lines finds those without, and a last one ends each of them
+// where the text goes back to its line's indentation.
 #include "lang/layout.h"
 
 #include <algorithm>
@@ -13,10 +14,20 @@ using enum TokenKind;
 
 bool begins_statement(TokenKind kind) {
   switch (kind) {
-    case kw_function: case kw_if: case kw_else: case kw_elif: case kw_while: case kw_for:
-    case kw_return: case kw_break: case kw_continue: case kw_import: case kw_action:
+    case kw_function:
+    case kw_if:
+    case kw_else:
+    case kw_elif:
+    case kw_while:
+    case kw_for:
+    case kw_return:
+    case kw_break:
+    case kw_continue:
+    case kw_import:
+    case kw_action:
       return true;
-    default: return false;
+    default:
+      return false;
   }
 }
 
@@ -28,8 +39,13 @@ TokenKind partner(TokenKind kind) {
 
 class Balancer {
  public:
-  Balancer(const std::vector<Token>& tokens, const SourceFile& source, FileId file, Diagnostics& diagnostics)
-      : tokens_(tokens), source_(source), file_(file), diagnostics_(diagnostics), unclosed_(tokens.size()) {}
+  Balancer(const std::vector<Token>& tokens, const SourceFile& source, FileId file,
+           Diagnostics& diagnostics)
+      : tokens_(tokens),
+        source_(source),
+        file_(file),
+        diagnostics_(diagnostics),
+        unclosed_(tokens.size()) {}
 
   std::vector<Token> run() {
     pass();
@@ -87,13 +103,20 @@ class Balancer {
           indent = token.indent;
           start_line(i);
           break;
-        case left_paren: case left_bracket: open(i, indent); break;
+        case left_paren:
+        case left_bracket:
+          open(i, indent);
+          break;
         case left_brace:
           while (in_expression()) close_missing(token);
           open(i, indent);
           break;
-        case right_paren: close(token, left_paren); break;
-        case right_bracket: close(token, left_bracket); break;
+        case right_paren:
+          close(token, left_paren);
+          break;
+        case right_bracket:
+          close(token, left_bracket);
+          break;
         case right_brace:
           while (in_expression()) close_missing(token);
           close(token, left_brace);
@@ -102,10 +125,12 @@ class Balancer {
           while (!open_.empty()) close_missing(token);
           out_.push_back(token);
           break;
-        case comma: case dot_dot:
+        case comma:
+        case dot_dot:
           if (!open_.empty()) open_.back().separated = true;
           [[fallthrough]];
-        default: out_.push_back(token);
+        default:
+          out_.push_back(token);
       }
     }
   }
@@ -114,8 +139,8 @@ class Balancer {
   bool looks_like_assignment(std::size_t line) const {
     if (line + 2 >= tokens_.size() || tokens_[line + 1].kind != name) return false;
     const TokenKind op = tokens_[line + 2].kind;
-    return (op == assign || op == plus_assign || op == minus_assign || op == star_assign || op == slash_assign ||
-            op == power_assign) &&
+    return (op == assign || op == plus_assign || op == minus_assign || op == star_assign ||
+            op == slash_assign || op == power_assign) &&
            tokens_[line].indent <= open_.back().indent;
   }
 
@@ -124,7 +149,8 @@ class Balancer {
     if (mode_ != Mode::matching && in_expression() && looks_like_assignment(line))
       while (in_expression()) close_missing(token);
     // An unclosed bracket ends where its line's indentation comes back.
-    while (!open_unclosed_.empty() && open_[open_unclosed_.back()].indent >= token.indent && next.kind != right_brace) {
+    while (!open_unclosed_.empty() && open_[open_unclosed_.back()].indent >= token.indent &&
+           next.kind != right_brace) {
       const std::size_t depth = open_unclosed_.back();
       while (open_.size() > depth) close_missing(token);
     }
@@ -160,7 +186,8 @@ class Balancer {
     out_.push_back(token);
   }
 
-  // The innermost bracket has no end in the text; one is put in behind the last word, before `before`.
+  // The innermost bracket has no end in the text; one is put in behind the last word, before
+  // `before`.
   void close_missing(const Token& before) {
     const std::size_t opener = open_.back().token;
     balanced_ = false;
@@ -177,14 +204,17 @@ class Balancer {
   void pop() {
     const Open& opened = open_.back();
     if (top() == left_bracket) out_[opened.out].juxtaposed = !opened.separated;
-    if (!open_unclosed_.empty() && open_unclosed_.back() == open_.size() - 1) open_unclosed_.pop_back();
+    if (!open_unclosed_.empty() && open_unclosed_.back() == open_.size() - 1)
+      open_unclosed_.pop_back();
     --count(top());
     open_.pop_back();
   }
 
   // ---- Reports ----
 
-  std::string line_of(const Token& token) const { return std::to_string(source_.position(token.begin).line); }
+  std::string line_of(const Token& token) const {
+    return std::to_string(source_.position(token.begin).line);
+  }
 
   void report_unclosed(const Token& opener, const Token& before) {
     reported_ = true;
@@ -194,7 +224,8 @@ class Balancer {
       help += " after it";
     else if (line_of(before) == line_of(opener))
       help += " before " + std::string(describe(before.kind));
-    else if (before.kind == newline && source_.position(out_.back().end).line == source_.position(opener.begin).line)
+    else if (before.kind == newline &&
+             source_.position(out_.back().end).line == source_.position(opener.begin).line)
       help += " on this line";
     else
       help += " before line " + line_of(before);
@@ -207,12 +238,16 @@ class Balancer {
     if (diagnostics_.error_count() >= Diagnostics::give_up) return;
     if (in_expression() && token.kind != right_brace) {
       const Token& opener = tokens_[open_.back().token];
-      diagnostics_.add({Severity::error, "wrong-bracket",
-                        std::string(describe(token.kind)) + " cannot close the " + std::string(describe(opener.kind)) +
-                            " of line " + line_of(opener),
-                        span(token), std::string(describe(partner(opener.kind))), {}});
+      diagnostics_.add({Severity::error,
+                        "wrong-bracket",
+                        std::string(describe(token.kind)) + " cannot close the " +
+                            std::string(describe(opener.kind)) + " of line " + line_of(opener),
+                        span(token),
+                        std::string(describe(partner(opener.kind))),
+                        {}});
     } else {
-      diagnostics_.error("stray-bracket", span(token), std::string(describe(token.kind)) + " closes nothing",
+      diagnostics_.error("stray-bracket", span(token),
+                         std::string(describe(token.kind)) + " closes nothing",
                          "remove it, or open the bracket before it");
     }
   }

@@ -1,5 +1,5 @@
-// The scanner: one pass over the bytes. Paper and section: the language of the 1985 paper ("A Pixel Stream Editing
-// Language"), with the chapter's `//` comments and braces.
+// The scanner: one pass over the bytes. Paper and section: the language of the 1985 paper ("A Pixel
+// Stream Editing Language"), with the chapter's `//` comments and braces.
 #include "lang/lexer.h"
 
 #include <algorithm>
@@ -22,32 +22,49 @@ struct Spelling {
 };
 
 constexpr auto brackets = std::to_array<Spelling>({
-    {"(", TokenKind::left_paren},   {")", TokenKind::right_paren},
-    {"[", TokenKind::left_bracket}, {"]", TokenKind::right_bracket},
-    {"{", TokenKind::left_brace},   {"}", TokenKind::right_brace},
-    {",", TokenKind::comma},        {";", TokenKind::semicolon},
+    {"(", TokenKind::left_paren},
+    {")", TokenKind::right_paren},
+    {"[", TokenKind::left_bracket},
+    {"]", TokenKind::right_bracket},
+    {"{", TokenKind::left_brace},
+    {"}", TokenKind::right_brace},
+    {",", TokenKind::comma},
+    {";", TokenKind::semicolon},
 });
 
 // Longest first.
 constexpr auto spellings = std::to_array<Spelling>({
-    {"**=", TokenKind::power_assign}, {"==", TokenKind::equal},
-    {"!=", TokenKind::not_equal},     {"<=", TokenKind::less_equal},
-    {">=", TokenKind::greater_equal}, {"&&", TokenKind::kw_and},
-    {"||", TokenKind::kw_or},         {"**", TokenKind::power},
-    {"+=", TokenKind::plus_assign},   {"-=", TokenKind::minus_assign},
-    {"*=", TokenKind::star_assign},   {"/=", TokenKind::slash_assign},
-    {"^=", TokenKind::power_assign},  {"..", TokenKind::dot_dot},
-    {":", TokenKind::colon},          {"?", TokenKind::question},
-    {".", TokenKind::dot},            {"+", TokenKind::plus},
-    {"-", TokenKind::minus},          {"*", TokenKind::star},
-    {"/", TokenKind::slash},          {"%", TokenKind::percent},
-    {"^", TokenKind::power},          {"<", TokenKind::less},
-    {">", TokenKind::greater},        {"=", TokenKind::assign},
+    {"**=", TokenKind::power_assign},
+    {"==", TokenKind::equal},
+    {"!=", TokenKind::not_equal},
+    {"<=", TokenKind::less_equal},
+    {">=", TokenKind::greater_equal},
+    {"&&", TokenKind::kw_and},
+    {"||", TokenKind::kw_or},
+    {"**", TokenKind::power},
+    {"+=", TokenKind::plus_assign},
+    {"-=", TokenKind::minus_assign},
+    {"*=", TokenKind::star_assign},
+    {"/=", TokenKind::slash_assign},
+    {"^=", TokenKind::power_assign},
+    {"..", TokenKind::dot_dot},
+    {":", TokenKind::colon},
+    {"?", TokenKind::question},
+    {".", TokenKind::dot},
+    {"+", TokenKind::plus},
+    {"-", TokenKind::minus},
+    {"*", TokenKind::star},
+    {"/", TokenKind::slash},
+    {"%", TokenKind::percent},
+    {"^", TokenKind::power},
+    {"<", TokenKind::less},
+    {">", TokenKind::greater},
+    {"=", TokenKind::assign},
     {"!", TokenKind::kw_not},
 });
 
-// What is written in other languages, or by a word processor, and how it is written here. `kind` is what the parser
-// goes on with.
+// What is written in other languages, or by a word processor, and how it is written here. `kind` is
+// what the parser goes on with.
 struct Lookalike {
   std::string_view text;
   TokenKind kind;
@@ -108,16 +125,17 @@ class Scanner {
   Diagnostics& diagnostics_;
   TokenList list_;
   std::size_t at_ = 0;
-  std::uint32_t indent_ = 0;    // of this line, while only white space has been seen on it
-  bool line_start_ = true;      // no word yet on this line
-  bool space_ = true;           // white space before what comes next
+  std::uint32_t indent_ = 0;  // of this line, while only white space has been seen on it
+  bool line_start_ = true;    // no word yet on this line
+  bool space_ = true;         // white space before what comes next
   bool tab_ = false, blank_before_tab_ = false, blank_ = false;
-  bool open_comment_ = true;    // a `*/` may still follow
+  bool open_comment_ = true;  // a `*/` may still follow
 
   // Whether the text is too wrong, or too long, to be read to its end.
   bool given_up() {
     if (list_.tokens.size() <= max_words) return diagnostics_.error_count() >= Diagnostics::give_up;
-    diagnostics_.error("program-too-large", span(at_, at_), "the program has more than " + std::to_string(max_words) + " words",
+    diagnostics_.error("program-too-large", span(at_, at_),
+                       "the program has more than " + std::to_string(max_words) + " words",
                        "divide it into modules");
     return true;
   }
@@ -165,8 +183,11 @@ class Scanner {
     const std::size_t begin = at_;
     while (at_ < text_.size() && text_[at_] != '\n') skip_text_character("comment");
     std::size_t end = at_;
-    while (end > begin + marker && (text_[end - 1] == '\r' || text_[end - 1] == ' ' || text_[end - 1] == '\t')) --end;
-    list_.comments.push_back({span(begin, end), std::string(text_.substr(begin + marker, end - begin - marker)),
+    while (end > begin + marker &&
+           (text_[end - 1] == '\r' || text_[end - 1] == ' ' || text_[end - 1] == '\t'))
+      --end;
+    list_.comments.push_back({span(begin, end),
+                              std::string(text_.substr(begin + marker, end - begin - marker)),
                               line_start_});
     space_ = true;
     return true;
@@ -231,7 +252,8 @@ class Scanner {
   bool after_value() const {
     if (space_ || list_.tokens.empty()) return false;
     const TokenKind kind = list_.tokens.back().kind;
-    return kind == TokenKind::name || kind == TokenKind::right_paren || kind == TokenKind::right_bracket;
+    return kind == TokenKind::name || kind == TokenKind::right_paren ||
+           kind == TokenKind::right_bracket;
   }
 
   // 12, 1.5, .5, 1., 1e-3; the dots of `1..5` belong to the range.
@@ -260,8 +282,10 @@ class Scanner {
     const std::string digits(text_.substr(begin, std::min<std::size_t>(suffix - begin, 40)));
     const std::string letters(text_.substr(suffix, std::min<std::size_t>(at_ - suffix, 40)));
     std::string help = "write `" + digits + " * " + letters + "` to multiply";
-    if (letters == "f" || letters == "F" || letters == "h" || letters == "u") help = "write `" + digits + "`: numbers have no suffix";
-    if (digits == "0" && (letters[0] == 'x' || letters[0] == 'X' || letters[0] == 'b')) help = "write the number in decimal";
+    if (letters == "f" || letters == "F" || letters == "h" || letters == "u")
+      help = "write `" + digits + "`: numbers have no suffix";
+    if (digits == "0" && (letters[0] == 'x' || letters[0] == 'X' || letters[0] == 'b'))
+      help = "write the number in decimal";
     if (letters[0] == '_') help = "write the digits without `_`";
     diagnostics_.error("bad-number", span(begin, at_), "a number cannot run into letters", help);
     emit(TokenKind::number, begin, suffix);
@@ -279,8 +303,9 @@ class Scanner {
     while (at_ < text_.size() && text_[at_] != '\n' && text_[at_] != quote) {
       if (text_[at_] == '\\' && at_ + 1 < text_.size() && text_[at_ + 1] != '\n') {
         if (std::string_view("ntr\\\"'").find(text_[at_ + 1]) == std::string_view::npos)
-          diagnostics_.error("bad-escape", span(at_, at_ + 1), "no such escape in a text",
-                             "the escapes are \\n \\t \\r \\\\ \\\" \\'; write `\\\\` for a backslash");
+          diagnostics_.error(
+              "bad-escape", span(at_, at_ + 1), "no such escape in a text",
+              "the escapes are \\n \\t \\r \\\\ \\\" \\'; write `\\\\` for a backslash");
         ++at_;
       }
       skip_text_character("text");
@@ -306,7 +331,8 @@ class Scanner {
     // Foreign spellings first: they contain the known ones. `=>` is not met in `a=>b` by accident.
     for (const Lookalike& lookalike : lookalikes) {
       if (!starts(lookalike.text)) continue;
-      if ((lookalike.text == "&" && starts("&&")) || (lookalike.text == "|" && starts("||"))) continue;
+      if ((lookalike.text == "&" && starts("&&")) || (lookalike.text == "|" && starts("||")))
+        continue;
       const std::size_t begin = at_;
       at_ += lookalike.text.size();
       diagnostics_.error("foreign-spelling", span(begin, at_),

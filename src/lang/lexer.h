@@ -9,8 +9,9 @@ namespace pse::lang {
 // A text with more words, line starts included, is refused.
 inline constexpr std::size_t max_words = 2'000'000;
 
-// The words of a text as they stand, with a newline token (outside and inside brackets alike) before the first word of
-// each line. Errors go to `diagnostics`; any bytes are accepted, in linear time.
+// The words of a text as they stand, with a newline token (outside and inside brackets alike)
+// before the first word of each line. Errors go to `diagnostics`; any bytes are accepted, in linear
+// time.
 TokenList scan(const SourceFile& source, FileId file, Diagnostics& diagnostics);
 
 // scan(), then lay_out(): what the parser reads.

@@ -10,10 +10,12 @@ namespace pse::lang {
 
 double number_value(std::string_view spelling) {
   double value = 0;
-  const auto [rest, error] = std::from_chars(spelling.data(), spelling.data() + spelling.size(), value);
+  const auto [rest, error] =
+      std::from_chars(spelling.data(), spelling.data() + spelling.size(), value);
   if (error != std::errc::result_out_of_range) return value;
 
-  // Too large or too small: told apart by the position of the first digit that is not 0, and the exponent.
+  // Too large or too small: told apart by the position of the first digit that is not 0, and the
+  // exponent.
   std::size_t digits = 0;
   long long magnitude = 0;
   bool fraction = false, seen = false;
@@ -50,10 +52,17 @@ std::string string_value(std::string_view token) {
       continue;
     }
     switch (token[++i]) {
-      case 'n': value += '\n'; break;
-      case 't': value += '\t'; break;
-      case 'r': value += '\r'; break;
-      default: value += token[i];
+      case 'n':
+        value += '\n';
+        break;
+      case 't':
+        value += '\t';
+        break;
+      case 'r':
+        value += '\r';
+        break;
+      default:
+        value += token[i];
     }
   }
   return value;

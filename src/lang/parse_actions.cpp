@@ -1,4 +1,5 @@
-// Actions and their movements, as chapter 12 of "Texturing & Modeling" prints them ("Painting with Actions").
+// Actions and their movements, as chapter 12 of "Texturing & Modeling" prints them ("Painting with
+// Actions").
 #include "lang/parser_state.h"
 
 namespace pse::lang {
@@ -32,10 +33,15 @@ bool Parser::at_movement() const {
   if (!at(name)) return false;
   if (text(peek()) == "add" && peek(1).kind == left_paren) return true;
   switch (peek(1).kind) {
-    case TokenKind::number: case name: return true;
-    case minus: return peek(1).space_before && !peek(2).space_before;
-    case left_paren: return peek(1).space_before;
-    default: return false;
+    case TokenKind::number:
+    case name:
+      return true;
+    case minus:
+      return peek(1).space_before && !peek(2).space_before;
+    case left_paren:
+      return peek(1).space_before;
+    default:
+      return false;
   }
 }
 
@@ -50,7 +56,8 @@ StmtPtr Parser::movement() {
 
   // (MOVE, value)
   const bool pair = node.kind != MovementKind::mix;
-  const std::string form = node.kind == MovementKind::add ? "write `add (MOVE, value)`" : "write `(MOVE, value)`";
+  const std::string form =
+      node.kind == MovementKind::add ? "write `add (MOVE, value)`" : "write `(MOVE, value)`";
   if (pair) take();
   const Token& word = peek();
   if (!expect(name, pair ? form : "")) return nullptr;

@@ -1,4 +1,5 @@
-// Blocks and lines: which statements belong together, and where to go on after an error. docs/grammar.md, "Blocks".
+// Blocks and lines: which statements belong together, and where to go on after an error.
+// docs/grammar.md, "Blocks".
 #include "lang/parser_state.h"
 
 namespace pse::lang {
@@ -53,13 +54,16 @@ bool Parser::next_line(const Layout& layout, std::uint32_t& tolerated) {
   } else if (column != tolerated || layout.column == tolerated) {
     if (column < layout.column) {
       if (!layout.top_level && (column <= layout.head_column || layout.inside_braces)) return false;
-      const std::string columns = std::to_string(layout.column) +
-                                  (layout.top_level ? "" : " or " + std::to_string(layout.head_column));
-      report("unbalanced-indentation", place, "this line is indented by " + std::to_string(column) +
-             ", as no line above it", "an indentation of " + columns);
+      const std::string columns =
+          std::to_string(layout.column) +
+          (layout.top_level ? "" : " or " + std::to_string(layout.head_column));
+      report("unbalanced-indentation", place,
+             "this line is indented by " + std::to_string(column) + ", as no line above it",
+             "an indentation of " + columns);
     } else if (!failed_) {
       const std::string meant = meant_keyword();
-      report("unexpected-indentation", place, "this line is indented deeper, but the line above begins no block",
+      report("unexpected-indentation", place,
+             "this line is indented deeper, but the line above begins no block",
              "an indentation of " + std::to_string(layout.column),
              meant.empty() ? "" : "did you mean `" + meant + "` in the line above?");
     }
@@ -80,7 +84,8 @@ Block Parser::body(const Layout& outer, std::string_view head, bool understood) 
   if (at(left_brace)) {
     block = braced_block();
   } else if (at(newline) && peek().indent > line_column_) {
-    Layout inner{.inside_braces = outer.braces, .column = peek().indent, .head_column = line_column_};
+    Layout inner{
+        .inside_braces = outer.braces, .column = peek().indent, .head_column = line_column_};
     take();
     const std::uint32_t begin = peek().begin;
     statements(block, inner);
@@ -89,8 +94,8 @@ Block Parser::body(const Layout& outer, std::string_view head, bool understood) 
     // The head's own error has been reported.
   } else if (at_statement_end()) {
     const Span place{file_, previous_end_, previous_end_};
-    report("missing-block", place, "`" + std::string(head) + "` has no block", "an indented line, or `{`",
-           "indent the lines that belong to it");
+    report("missing-block", place, "`" + std::string(head) + "` has no block",
+           "an indented line, or `{`", "indent the lines that belong to it");
   } else {
     // Only one statement follows on the head's line; what comes after `;` is outside.
     block.same_line = true;
@@ -102,11 +107,12 @@ Block Parser::body(const Layout& outer, std::string_view head, bool understood) 
     else
       skip_statement();
     block.span = since(begin);
-    if (at(semicolon) && peek(1).kind != newline && peek(1).kind != end && peek(1).kind != right_brace &&
-        peek(1).kind != kw_else && peek(1).kind != kw_elif)
-      diagnostics_.warning("one-statement-body", span(peek(1)),
-                           "this statement does not belong to the `" + std::string(head) + "` before it",
-                           "put both into `{ }`, or on lines of their own");
+    if (at(semicolon) && peek(1).kind != newline && peek(1).kind != end &&
+        peek(1).kind != right_brace && peek(1).kind != kw_else && peek(1).kind != kw_elif)
+      diagnostics_.warning(
+          "one-statement-body", span(peek(1)),
+          "this statement does not belong to the `" + std::string(head) + "` before it",
+          "put both into `{ }`, or on lines of their own");
   }
   --blocks_;
   return block;
@@ -125,7 +131,8 @@ Block Parser::braced_block() {
   return block;
 }
 
-// After an error: to the end of the statement, reading the block that may follow it for its own errors.
+// After an error: to the end of the statement, reading the block that may follow it for its own
+// errors.
 void Parser::skip_statement() {
   const Restore plain(juxtaposed_, false);
   while (!at(newline) && !at(semicolon) && !at(right_brace) && !at(end)) {
@@ -158,7 +165,8 @@ bool Parser::at_statement_end() const {
 }
 
 std::string Parser::meant_keyword() const {
-  return nearest_name(first_word_, {"function", "if", "else", "elif", "while", "for", "return", "import", "action"});
+  return nearest_name(first_word_, {"function", "if", "else", "elif", "while", "for", "return",
+                                    "import", "action"});
 }
 
 }  // namespace pse::lang

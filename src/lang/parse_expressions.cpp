@@ -10,8 +10,10 @@ namespace {
 
 using enum TokenKind;
 
-// Levels of the operators between two operands, from low to high. `not` stands between `and` and the comparisons.
-constexpr int level_or = 1, level_and = 2, level_not = 3, level_compare = 4, level_sum = 5, level_product = 6;
+// Levels of the operators between two operands, from low to high. `not` stands between `and` and
+// the comparisons.
+constexpr int level_or = 1, level_and = 2, level_not = 3, level_compare = 4, level_sum = 5,
+              level_product = 6;
 
 struct Operator {
   int level = 0;  // 0: no operator between operands
@@ -20,20 +22,34 @@ struct Operator {
 
 Operator operator_of(TokenKind kind) {
   switch (kind) {
-    case kw_or: return {level_or, BinaryOp::logical_or};
-    case kw_and: return {level_and, BinaryOp::logical_and};
-    case less: return {level_compare, BinaryOp::less};
-    case less_equal: return {level_compare, BinaryOp::less_equal};
-    case greater: return {level_compare, BinaryOp::greater};
-    case greater_equal: return {level_compare, BinaryOp::greater_equal};
-    case equal: return {level_compare, BinaryOp::equal};
-    case not_equal: return {level_compare, BinaryOp::not_equal};
-    case plus: return {level_sum, BinaryOp::add};
-    case minus: return {level_sum, BinaryOp::subtract};
-    case star: return {level_product, BinaryOp::multiply};
-    case slash: return {level_product, BinaryOp::divide};
-    case percent: return {level_product, BinaryOp::modulo};
-    default: return {};
+    case kw_or:
+      return {level_or, BinaryOp::logical_or};
+    case kw_and:
+      return {level_and, BinaryOp::logical_and};
+    case less:
+      return {level_compare, BinaryOp::less};
+    case less_equal:
+      return {level_compare, BinaryOp::less_equal};
+    case greater:
+      return {level_compare, BinaryOp::greater};
+    case greater_equal:
+      return {level_compare, BinaryOp::greater_equal};
+    case equal:
+      return {level_compare, BinaryOp::equal};
+    case not_equal:
+      return {level_compare, BinaryOp::not_equal};
+    case plus:
+      return {level_sum, BinaryOp::add};
+    case minus:
+      return {level_sum, BinaryOp::subtract};
+    case star:
+      return {level_product, BinaryOp::multiply};
+    case slash:
+      return {level_product, BinaryOp::divide};
+    case percent:
+      return {level_product, BinaryOp::modulo};
+    default:
+      return {};
   }
 }
 
@@ -59,7 +75,8 @@ ExprPtr Parser::expression() {
   if (!if_false) return nullptr;
   const Span place = condition->span.to(if_false->span);
   const int below = std::max<int>(condition->height, higher(if_true, if_false));
-  return make(place, ConditionalExpr{std::move(condition), std::move(if_true), std::move(if_false)}, below);
+  return make(place, ConditionalExpr{std::move(condition), std::move(if_true), std::move(if_false)},
+              below);
 }
 
 // Operators of level `lowest` and above, left to right.
@@ -122,7 +139,8 @@ ExprPtr Parser::power() {
   if (!exponent) return nullptr;
   const Span place = base->span.to(exponent->span);
   const int below = higher(base, exponent);
-  return make(place, BinaryExpr{BinaryOp::power, std::move(base), std::move(exponent), op_span}, below);
+  return make(place, BinaryExpr{BinaryOp::power, std::move(base), std::move(exponent), op_span},
+              below);
 }
 
 // f(a)  a[i]  a.b
@@ -130,7 +148,8 @@ ExprPtr Parser::postfix() {
   ExprPtr value = primary();
   while (value) {
     const bool apart = juxtaposed_ && peek().space_before;
-    const bool named = std::holds_alternative<NameExpr>(value->node) || std::holds_alternative<MemberExpr>(value->node);
+    const bool named = std::holds_alternative<NameExpr>(value->node) ||
+                       std::holds_alternative<MemberExpr>(value->node);
     if (at(left_paren) && named && !value->parenthesised && !apart) {
       value = call(std::move(value));
     } else if (at(left_bracket) && !apart && !at_metadata()) {
@@ -147,14 +166,27 @@ ExprPtr Parser::postfix() {
 ExprPtr Parser::primary() {
   const Token& word = peek();
   switch (word.kind) {
-    case TokenKind::number: return number();
-    case string: take(); return make(span(word), StringExpr{string_value(text(word))}, 0);
-    case name: take(); return make(span(word), NameExpr{std::string(text(word))}, 0);
-    case kw_true: take(); return make(span(word), BoolExpr{true}, 0);
-    case kw_false: take(); return make(span(word), BoolExpr{false}, 0);
-    case left_paren: return parentheses();
-    case left_bracket: return vector();
-    default: report_missing_operand(); return nullptr;
+    case TokenKind::number:
+      return number();
+    case string:
+      take();
+      return make(span(word), StringExpr{string_value(text(word))}, 0);
+    case name:
+      take();
+      return make(span(word), NameExpr{std::string(text(word))}, 0);
+    case kw_true:
+      take();
+      return make(span(word), BoolExpr{true}, 0);
+    case kw_false:
+      take();
+      return make(span(word), BoolExpr{false}, 0);
+    case left_paren:
+      return parentheses();
+    case left_bracket:
+      return vector();
+    default:
+      report_missing_operand();
+      return nullptr;
   }
 }
 
@@ -163,7 +195,8 @@ ExprPtr Parser::number() {
   const double value = number_value(text(word));
   // Half a unit above the largest 32-bit number, where rounding goes to infinity.
   if (value >= 0x1.ffffffp127)
-    diagnostics_.warning("number-too-large", span(word), "this number is infinite: it is above 3.4e38",
+    diagnostics_.warning("number-too-large", span(word),
+                         "this number is infinite: it is above 3.4e38",
                          "write `INF` if that is meant");
   return make(span(word), NumberExpr{value, std::string(text(word))}, 0);
 }
@@ -178,8 +211,8 @@ ExprPtr Parser::parentheses() {
     if (!element(elements, below)) return nullptr;
   } while (accept(comma));
   if (at(assign)) {
-    report("assignment-in-condition", span(peek()), "`=` sets a value and cannot stand in an expression", "`==`",
-           "write `==` to compare");
+    report("assignment-in-condition", span(peek()),
+           "`=` sets a value and cannot stand in an expression", "`==`", "write `==` to compare");
     return nullptr;
   }
   if (!expect(right_paren)) return nullptr;
@@ -207,7 +240,8 @@ ExprPtr Parser::vector() {
   int below = 0;
   while (!at(right_bracket)) {
     if (!element(elements, below)) return nullptr;
-    if (elements.size() == 1 && at(dot_dot)) return range(opener.begin, std::move(elements.front()));
+    if (elements.size() == 1 && at(dot_dot))
+      return range(opener.begin, std::move(elements.front()));
     if (opener.juxtaposed || accept(comma)) continue;
     if (!at(right_bracket)) {
       unexpected("`,` or `]`", "separate all the elements by commas, or none of them");
@@ -230,7 +264,8 @@ ExprPtr Parser::range(std::uint32_t begin, ExprPtr first) {
     if (!node.step) return nullptr;
     below = std::max<int>(below, node.step->height);
   }
-  if (!expect(right_bracket, "a range is `[first .. last]` or `[first .. last by step]`")) return nullptr;
+  if (!expect(right_bracket, "a range is `[first .. last]` or `[first .. last by step]`"))
+    return nullptr;
   return make(since(begin), std::move(node), below);
 }
 
@@ -288,24 +323,28 @@ ExprPtr Parser::index(ExprPtr base) {
 ExprPtr Parser::member(ExprPtr base) {
   take();
   const Token& word = peek();
-  if (!expect(name, "name a component, as in `p.x`, or a channel, as in `fg.color`")) return nullptr;
+  if (!expect(name, "name a component, as in `p.x`, or a channel, as in `fg.color`"))
+    return nullptr;
   const std::uint32_t begin = base->span.begin;
   const int below = base->height;
-  return make(since(begin), MemberExpr{std::move(base), std::string(text(word)), span(word)}, below);
+  return make(since(begin), MemberExpr{std::move(base), std::string(text(word)), span(word)},
+              below);
 }
 
 bool Parser::at_new_element() const {
   return juxtaposed_ && at(minus) && peek().space_before && !peek(1).space_before;
 }
 
-// `[[ name =`, ` [[ name` or `[[ ]]` behind a value. An index in double brackets would be a vector, which none is.
+// `[[ name =`, ` [[ name` or `[[ ]]` behind a value. An index in double brackets would be a vector,
+// which none is.
 bool Parser::at_metadata() const {
   if (!at(left_bracket) || peek(1).kind != left_bracket || peek(1).space_before) return false;
   const bool entry = peek(2).kind == name && (peek(3).kind == assign || peek().space_before);
   return entry || peek(2).kind == right_bracket;
 }
 
-// ---- Errors -----------------------------------------------------------------------------------------------------
+// ---- Errors
+// -----------------------------------------------------------------------------------------------------
 
 void Parser::report_missing_operand() {
   const TokenKind before = position_ > 0 ? words_.tokens[position_ - 1].kind : end;

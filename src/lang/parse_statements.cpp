@@ -11,13 +11,20 @@ using enum TokenKind;
 
 std::optional<AssignOp> assign_op(TokenKind kind) {
   switch (kind) {
-    case assign: return AssignOp::set;
-    case plus_assign: return AssignOp::add;
-    case minus_assign: return AssignOp::subtract;
-    case star_assign: return AssignOp::multiply;
-    case slash_assign: return AssignOp::divide;
-    case power_assign: return AssignOp::power;
-    default: return std::nullopt;
+    case assign:
+      return AssignOp::set;
+    case plus_assign:
+      return AssignOp::add;
+    case minus_assign:
+      return AssignOp::subtract;
+    case star_assign:
+      return AssignOp::multiply;
+    case slash_assign:
+      return AssignOp::divide;
+    case power_assign:
+      return AssignOp::power;
+    default:
+      return std::nullopt;
   }
 }
 
@@ -75,27 +82,41 @@ constexpr auto foreign_words = std::to_array<Foreign>({
 StmtPtr Parser::statement(const Layout& layout) {
   const std::uint32_t begin = peek().begin;
   switch (peek().kind) {
-    case kw_if: return if_statement(layout);
-    case kw_while: return while_statement(layout);
-    case kw_for: return for_statement(layout);
-    case kw_return: return return_statement();
-    case kw_function: return function_statement(layout);
-    case kw_import: return import_statement();
-    case kw_action: return action_statement(layout);
-    case kw_break: take(); return make_statement(begin, BreakStmt{});
-    case kw_continue: take(); return make_statement(begin, ContinueStmt{});
-    case kw_else: case kw_elif:
-      report("else-without-if", span(peek()), std::string(describe(peek().kind)) + " has no `if`", {},
-             "begin it in the column of its `if`, right behind the block of the `if`");
+    case kw_if:
+      return if_statement(layout);
+    case kw_while:
+      return while_statement(layout);
+    case kw_for:
+      return for_statement(layout);
+    case kw_return:
+      return return_statement();
+    case kw_function:
+      return function_statement(layout);
+    case kw_import:
+      return import_statement();
+    case kw_action:
+      return action_statement(layout);
+    case kw_break:
+      take();
+      return make_statement(begin, BreakStmt{});
+    case kw_continue:
+      take();
+      return make_statement(begin, ContinueStmt{});
+    case kw_else:
+    case kw_elif:
+      report("else-without-if", span(peek()), std::string(describe(peek().kind)) + " has no `if`",
+             {}, "begin it in the column of its `if`, right behind the block of the `if`");
       return nullptr;
     case left_brace:
       if (!failed_) {
         const std::string meant = meant_keyword();
         report("block-without-head", span(peek()), "this block has no head",
-               "`if`, `while`, `for`, `function` or `action`", meant.empty() ? "" : "did you mean `" + meant + "`?");
+               "`if`, `while`, `for`, `function` or `action`",
+               meant.empty() ? "" : "did you mean `" + meant + "`?");
       }
       return nullptr;
-    default: return simple_statement();
+    default:
+      return simple_statement();
   }
 }
 
@@ -111,10 +132,12 @@ StmtPtr Parser::simple_statement() {
     StmtPtr result;
     return assignment(first.begin, std::move(value), *op, result) ? std::move(result) : nullptr;
   }
-  if (first.kind == name && std::holds_alternative<CallExpr>(value->node)) first_word_ = quote(span(first));
+  if (first.kind == name && std::holds_alternative<CallExpr>(value->node))
+    first_word_ = quote(span(first));
   const auto* binary = std::get_if<BinaryExpr>(&value->node);
   if (binary && binary->op == BinaryOp::equal && !value->parenthesised)
-    diagnostics_.warning("unused-comparison", binary->op_span, "this comparison is not used", "write `=` to set a value");
+    diagnostics_.warning("unused-comparison", binary->op_span, "this comparison is not used",
+                         "write `=` to set a value");
   return make_statement(first.begin, ExprStmt{std::move(value)});
 }
 
@@ -185,7 +208,8 @@ StmtPtr Parser::if_statement(const Layout& layout) {
     branch.body = body(layout, "if", branch.condition != nullptr);
     node.branches.push_back(std::move(branch));
 
-    // Another branch, on this line or the next; `else if` is a branch like any other, however many there are.
+    // Another branch, on this line or the next; `else if` is a branch like any other, however many
+    // there are.
     if (!take_else(layout, column, node.branches.back().body.same_line)) break;
     head = peek().begin;
     if (at(kw_else) && peek(1).kind != kw_if) {
@@ -201,7 +225,8 @@ StmtPtr Parser::if_statement(const Layout& layout) {
   return make_statement(begin, std::move(node));
 }
 
-// Goes to the `else`, `elif` or misspelt `elseif` that belongs to an `if` which began in `column`, if there is one.
+// Goes to the `else`, `elif` or misspelt `elseif` that belongs to an `if` which began in `column`,
+// if there is one.
 bool Parser::take_else(const Layout& layout, std::uint32_t column, bool after_statement) {
   std::size_t ahead = 0;
   if (after_statement && peek(ahead).kind == semicolon) ++ahead;
@@ -214,7 +239,8 @@ bool Parser::take_else(const Layout& layout, std::uint32_t column, bool after_st
   const bool misspelt = spelling == "elseif" || spelling == "elsif";
   if (word.kind != kw_else && word.kind != kw_elif && !misspelt) return false;
   if (misspelt)
-    report("unknown-word", span(word), "there is no `" + std::string(spelling) + "`", {}, "write `else if` or `elif`");
+    report("unknown-word", span(word), "there is no `" + std::string(spelling) + "`", {},
+           "write `else if` or `elif`");
   for (; ahead > 0; --ahead) take();
   return true;
 }
@@ -227,12 +253,13 @@ StmtPtr Parser::while_statement(const Layout& layout) {
   return make_statement(begin, std::move(node));
 }
 
-// The condition of `if` and `while`. After an error the rest of the head is skipped, so that the body is read.
+// The condition of `if` and `while`. After an error the rest of the head is skipped, so that the
+// body is read.
 ExprPtr Parser::condition() {
   ExprPtr value = expression();
   if (value && at(assign)) {
-    report("assignment-in-condition", span(peek()), "`=` sets a value and cannot stand in a condition", "`==`",
-           "write `==` to compare");
+    report("assignment-in-condition", span(peek()),
+           "`=` sets a value and cannot stand in a condition", "`==`", "write `==` to compare");
     value = nullptr;
   }
   if (!value) skip_head();
@@ -289,7 +316,8 @@ StmtPtr Parser::function_statement(const Layout& layout) {
 }
 
 bool Parser::parameters(std::vector<Parameter>& list) {
-  if (!expect(left_paren, "write the parameters in parentheses, `()` when there are none")) return false;
+  if (!expect(left_paren, "write the parameters in parentheses, `()` when there are none"))
+    return false;
   while (!at(right_paren)) {
     const Token& word = peek();
     if (!expect(name, "a parameter is a name, or `name = value`")) return false;
@@ -301,7 +329,8 @@ bool Parser::parameters(std::vector<Parameter>& list) {
     list.push_back(std::move(parameter));
     if (accept(comma)) continue;
     if (!at(right_paren)) {
-      unexpected("`,` or `)`", at(name) ? "parameters have no types; set them apart by commas" : "");
+      unexpected("`,` or `)`",
+                 at(name) ? "parameters have no types; set them apart by commas" : "");
       return false;
     }
   }
@@ -315,7 +344,8 @@ StmtPtr Parser::import_statement() {
   const std::uint32_t begin = take().begin;
   ImportStmt node;
   const Token& word = peek();
-  if (!expect(name, "write the module's name without quotes: `import marble` reads marble.pse")) return nullptr;
+  if (!expect(name, "write the module's name without quotes: `import marble` reads marble.pse"))
+    return nullptr;
   node.module = text(word);
   node.module_span = span(word);
   if (at_word("as")) {
@@ -330,15 +360,18 @@ StmtPtr Parser::import_statement() {
 void Parser::check_top_level(const Token& word) {
   if (blocks_ == 0) return;
   const std::string what(describe(word.kind));
-  report("not-at-top-level", span(word), what + " cannot stand inside a block", {}, "move it to the top level");
+  report("not-at-top-level", span(word), what + " cannot stand inside a block", {},
+         "move it to the top level");
 }
 
-// `def f(x)`, `let x = 1`, `whille x < 1`: two words in a row, the first of which begins no statement here.
+// `def f(x)`, `let x = 1`, `whille x < 1`: two words in a row, the first of which begins no
+// statement here.
 bool Parser::report_foreign_word() {
   if (!at(name)) return false;
   const std::string_view word = text(peek());
   const TokenKind next = peek(1).kind;
-  const bool two_words = next == name || next == TokenKind::number || next == string || next == kw_not;
+  const bool two_words =
+      next == name || next == TokenKind::number || next == string || next == kw_not;
   const bool misspelt_else = word == "elseif" || word == "elsif";
   if (!misspelt_else && !two_words) return false;
 
@@ -353,7 +386,8 @@ bool Parser::report_foreign_word() {
   // In an action `name amount` mixes another action in.
   if (help.empty() && in_action_) return false;
   if (!misspelt_else && in_action_ && next != name) return false;
-  report("unknown-word", span(peek()), "`" + quote(span(peek())) + "` begins no statement", {}, help);
+  report("unknown-word", span(peek()), "`" + quote(span(peek())) + "` begins no statement", {},
+         help);
   return true;
 }
 

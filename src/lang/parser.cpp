@@ -10,9 +10,14 @@ namespace pse::lang {
 
 Parser::Parser(const SourceMap& sources, FileId file, TokenList words, Diagnostics& diagnostics,
                const ParseLimits& limits)
-    : sources_(sources), file_(file), words_(std::move(words)), diagnostics_(diagnostics), limits_(limits) {}
+    : sources_(sources),
+      file_(file),
+      words_(std::move(words)),
+      diagnostics_(diagnostics),
+      limits_(limits) {}
 
-// ---- Words ------------------------------------------------------------------------------------------------------
+// ---- Words
+// ------------------------------------------------------------------------------------------------------
 
 const Token& Parser::peek(std::size_t ahead) const {
   return words_.tokens[std::min(position_ + ahead, words_.tokens.size() - 1)];
@@ -51,12 +56,14 @@ std::string Parser::quote(const Span& place) const {
   return std::string(whole);
 }
 
-// ---- Errors and limits ------------------------------------------------------------------------------------------
+// ---- Errors and limits
+// ------------------------------------------------------------------------------------------
 
-void Parser::report(std::string code, Span place, std::string message, std::string expected, std::string suggestion) {
+void Parser::report(std::string code, Span place, std::string message, std::string expected,
+                    std::string suggestion) {
   if (stopped_ || diagnostics_.error_count() >= Diagnostics::give_up) return;
-  diagnostics_.add({Severity::error, std::move(code), std::move(message), place, std::move(expected),
-                    std::move(suggestion)});
+  diagnostics_.add({Severity::error, std::move(code), std::move(message), place,
+                    std::move(expected), std::move(suggestion)});
 }
 
 void Parser::unexpected(std::string expected, std::string suggestion) {
@@ -67,7 +74,8 @@ void Parser::unexpected(std::string expected, std::string suggestion) {
   // What is missing at the end of a line is missing behind its last word.
   Span place = span(token);
   std::string message = "unexpected " + std::string(describe(token.kind));
-  if (token.kind == TokenKind::name || token.kind == TokenKind::number) message = "unexpected `" + quote(place) + "`";
+  if (token.kind == TokenKind::name || token.kind == TokenKind::number)
+    message = "unexpected `" + quote(place) + "`";
   if (token.kind == TokenKind::newline || token.kind == TokenKind::end) {
     place = {file_, previous_end_, previous_end_};
     message = token.kind == TokenKind::end ? "the text ends too early" : "the line ends too early";
@@ -85,7 +93,8 @@ bool Parser::count_node(Span place) {
   if (stopped_) return false;
   if (++nodes_ <= limits_.max_nodes) return true;
   stop("program-too-large", place,
-       "the program has more than " + std::to_string(limits_.max_nodes) + " expressions and statements",
+       "the program has more than " + std::to_string(limits_.max_nodes) +
+           " expressions and statements",
        "divide it into modules");
   return false;
 }
@@ -98,7 +107,8 @@ Parser::Level::Level(Parser& parser) : parser_(parser) {
                "compute it in steps, or move the inner part into a function");
 }
 
-// ---- Entry ------------------------------------------------------------------------------------------------------
+// ---- Entry
+// ------------------------------------------------------------------------------------------------------
 
 Program Parser::program() {
   Program program;
@@ -122,16 +132,19 @@ ExprPtr Parser::lone_expression() {
 
 namespace {
 
-bool check_size(const SourceMap& sources, FileId file, Diagnostics& diagnostics, const ParseLimits& limits) {
+bool check_size(const SourceMap& sources, FileId file, Diagnostics& diagnostics,
+                const ParseLimits& limits) {
   if (sources.file(file).text.size() <= limits.max_bytes) return true;
   diagnostics.error("file-too-large", {file, 0, 0},
-                    "the text is longer than " + std::to_string(limits.max_bytes) + " bytes", "divide it into modules");
+                    "the text is longer than " + std::to_string(limits.max_bytes) + " bytes",
+                    "divide it into modules");
   return false;
 }
 
 }  // namespace
 
-Program parse(const SourceMap& sources, FileId file, Diagnostics& diagnostics, const ParseLimits& limits) {
+Program parse(const SourceMap& sources, FileId file, Diagnostics& diagnostics,
+              const ParseLimits& limits) {
   Program nothing;
   nothing.file = file;
   if (!check_size(sources, file, diagnostics, limits)) return nothing;
@@ -142,7 +155,8 @@ ExprPtr parse_expression(const SourceMap& sources, FileId file, Diagnostics& dia
   const ParseLimits limits;
   if (!check_size(sources, file, diagnostics, limits)) return nullptr;
   const std::size_t before = diagnostics.error_count();
-  ExprPtr value = Parser(sources, file, lex(sources, file, diagnostics), diagnostics, limits).lone_expression();
+  ExprPtr value =
+      Parser(sources, file, lex(sources, file, diagnostics), diagnostics, limits).lone_expression();
   return diagnostics.error_count() == before ? std::move(value) : nullptr;
 }
 

@@ -1,5 +1,6 @@
-// The parser's inside: a recursive descent over the words, one method for each rule of docs/grammar.md. Its methods are
-// spread over parse_expressions.cpp, parse_statements.cpp, parse_blocks.cpp and parse_actions.cpp.
+// The parser's inside: a recursive descent over the words, one method for each rule of
+// docs/grammar.md. Its methods are spread over parse_expressions.cpp, parse_statements.cpp,
+// parse_blocks.cpp and parse_actions.cpp.
 #pragma once
 
 #include <string>
@@ -14,14 +15,15 @@ namespace pse::lang {
 // How the lines of a block are held together.
 struct Layout {
   bool braces = false;
-  bool inside_braces = false;      // the block's head stands in a braced block: lines need not align there
+  bool inside_braces =
+      false;  // the block's head stands in a braced block: lines need not align there
   bool top_level = false;
-  std::uint32_t column = 0;        // of an indented block: where its lines begin
-  std::uint32_t head_column = 0;   // of an indented block: where its head's line begins
+  std::uint32_t column = 0;       // of an indented block: where its lines begin
+  std::uint32_t head_column = 0;  // of an indented block: where its head's line begins
 };
 
-// A rule's method returns null, or false, after an error; the error is then reported already, and the statement's
-// caller skips to where the next statement may begin.
+// A rule's method returns null, or false, after an error; the error is then reported already, and
+// the statement's caller skips to where the next statement may begin.
 class Parser {
  public:
   Parser(const SourceMap& sources, FileId file, TokenList words, Diagnostics& diagnostics,
@@ -140,13 +142,13 @@ class Parser {
   std::uint32_t line_column_ = 0;   // where the current line begins
   std::size_t lines_ = 0;           // newlines taken
   std::size_t nodes_ = 0;
-  int level_ = 0;                   // of recursion
-  int blocks_ = 0;                  // open blocks
+  int level_ = 0;   // of recursion
+  int blocks_ = 0;  // open blocks
   bool stopped_ = false;
-  bool failed_ = false;             // the statement before was not understood
+  bool failed_ = false;  // the statement before was not understood
   bool in_action_ = false;
-  bool juxtaposed_ = false;         // directly inside a vector without commas
-  std::string first_word_;          // of the statement before, when that was a call
+  bool juxtaposed_ = false;  // directly inside a vector without commas
+  std::string first_word_;   // of the statement before, when that was a call
 };
 
 // A set value that comes back at the end of the scope.
@@ -167,7 +169,8 @@ ExprPtr Parser::make(Span place, Node node, int below) {
   if (!count_node(place)) return nullptr;
   if (below >= limits_.max_height) {
     stop("expression-too-long", place,
-         "this expression has more than " + std::to_string(limits_.max_height) + " operators in a row",
+         "this expression has more than " + std::to_string(limits_.max_height) +
+             " operators in a row",
          "compute it in steps");
     return nullptr;
   }

@@ -1,4 +1,5 @@
-// `--emit ast`: the tree as indented text, without places, so that two texts with the same meaning print the same.
+// `--emit ast`: the tree as indented text, without places, so that two texts with the same meaning
+// print the same.
 #include <array>
 #include <charconv>
 
@@ -9,9 +10,11 @@ namespace pse::lang {
 
 namespace {
 
-constexpr std::array binary_names = {"add", "subtract", "multiply", "divide", "modulo", "power", "less", "less_equal",
-                                     "greater", "greater_equal", "equal", "not_equal", "and", "or"};
-constexpr std::array assign_names = {"set", "set_add", "set_subtract", "set_multiply", "set_divide", "set_power"};
+constexpr std::array binary_names = {"add",   "subtract",  "multiply",   "divide",  "modulo",
+                                     "power", "less",      "less_equal", "greater", "greater_equal",
+                                     "equal", "not_equal", "and",        "or"};
+constexpr std::array assign_names = {"set",          "set_add",    "set_subtract",
+                                     "set_multiply", "set_divide", "set_power"};
 constexpr std::array movement_names = {"movement", "add_movement", "mix_action"};
 
 std::string number_text(double value) {
@@ -24,11 +27,16 @@ std::string number_text(double value) {
 std::string quoted(std::string_view value) {
   std::string out = "\"";
   for (const char c : utf8_repaired(value)) {
-    if (c == '\n') out += "\\n";
-    else if (c == '\t') out += "\\t";
-    else if (c == '\r') out += "\\r";
-    else if (c == '"' || c == '\\') (out += '\\') += c;
-    else out += c;
+    if (c == '\n')
+      out += "\\n";
+    else if (c == '\t')
+      out += "\\t";
+    else if (c == '\r')
+      out += "\\r";
+    else if (c == '"' || c == '\\')
+      (out += '\\') += c;
+    else
+      out += c;
   }
   return out + "\"";
 }
@@ -117,7 +125,8 @@ class Printer {
     block(node.body, depth + 1);
   }
   void print_node(const MovementStmt& node, int depth) {
-    line(depth, std::string(movement_names[static_cast<std::size_t>(node.kind)]) + " " + node.movement);
+    line(depth,
+         std::string(movement_names[static_cast<std::size_t>(node.kind)]) + " " + node.movement);
     operand(node.value);
     out += "\n";
   }

@@ -18,13 +18,26 @@ std::string print_tokens(const SourceMap& sources, FileId file) {
     out += place;
     const std::string_view text(source.text.data() + token.begin, token.end - token.begin);
     switch (token.kind) {
-      case TokenKind::newline: out += "line, indented by " + std::to_string(token.indent); break;
-      case TokenKind::end: out += "end"; break;
-      case TokenKind::number: out += "number " + std::string(text); break;
-      case TokenKind::name: out += "name " + std::string(text); break;
-      case TokenKind::string: out += "string " + utf8_repaired(text); break;
-      case TokenKind::invalid: out += "unknown " + utf8_repaired(text); break;
-      default: out += describe(token.kind);
+      case TokenKind::newline:
+        out += "line, indented by " + std::to_string(token.indent);
+        break;
+      case TokenKind::end:
+        out += "end";
+        break;
+      case TokenKind::number:
+        out += "number " + std::string(text);
+        break;
+      case TokenKind::name:
+        out += "name " + std::string(text);
+        break;
+      case TokenKind::string:
+        out += "string " + utf8_repaired(text);
+        break;
+      case TokenKind::invalid:
+        out += "unknown " + utf8_repaired(text);
+        break;
+      default:
+        out += describe(token.kind);
     }
     out += token.made_up ? " (missing in the text)\n" : "\n";
   }

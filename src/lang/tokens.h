@@ -1,4 +1,5 @@
-// The words of a program: what the lexer makes and the parser reads. First arrow of the flow: text -> tokens.
+// The words of a program: what the lexer makes and the parser reads. First arrow of the flow:
+// text -> tokens.
 #pragma once
 
 #include <cstdint>

@@ -51,7 +51,8 @@ TEST(Diagnostics, WarningsAreNoErrors) {
 }
 
 TEST(NearestName, FindsMisspellings) {
-  const std::vector<std::string> names = {"turbulence", "direction", "distance", "norm", "noise", "Noise", "PI", "sin", "asin"};
+  const std::vector<std::string> names = {"turbulence", "direction", "distance", "norm", "noise",
+                                          "Noise",      "PI",        "sin",      "asin"};
   EXPECT_EQ(nearest_name("turbulance", names), "turbulence");
   EXPECT_EQ(nearest_name("trubulence", names), "turbulence");  // two letters swapped count once
   EXPECT_EQ(nearest_name("nrom", names), "norm");

@@ -1,4 +1,5 @@
-// Diagnostics as text and as JSON: carets under tabs, wide letters and bytes that are none, long lines, hostile texts.
+// Diagnostics as text and as JSON: carets under tabs, wide letters and bytes that are none, long
+// lines, hostile texts.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -17,8 +18,10 @@ struct Case {
   Case(const std::string& text, const std::string& mark, const std::string& name = "a.pse") {
     const FileId file = sources.add(name, text);
     const std::size_t begin = text.find(mark);
-    diagnostics.error("code", {file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(begin + mark.size())},
-                      "message", "do this");
+    diagnostics.error(
+        "code",
+        {file, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(begin + mark.size())},
+        "message", "do this");
   }
   std::string text(bool colour = false) const { return print_text(diagnostics, sources, colour); }
 };
@@ -38,22 +41,28 @@ TEST(PrintText, ShowsWhatWasExpected) {
   SourceMap sources;
   Diagnostics diagnostics;
   diagnostics.add({Severity::error, "c", "m", {sources.add("f", "a )"), 2, 3}, "a name", {}});
-  EXPECT_EQ(print_text(diagnostics, sources, false), "f:1:3: error: m [c]\n   1 | a )\n     |   ^\n       expected: a name\n");
+  EXPECT_EQ(print_text(diagnostics, sources, false),
+            "f:1:3: error: m [c]\n   1 | a )\n     |   ^\n       expected: a name\n");
 }
 
 TEST(PrintText, CaretStandsUnderTabsAndWideLetters) {
   EXPECT_EQ(Case("\tfoo", "foo").text(),
-            "a.pse:1:2: error: message [code]\n   1 |         foo\n     |         ^~~\n       help: do this\n");
+            "a.pse:1:2: error: message [code]\n   1 |         foo\n     |         ^~~\n       "
+            "help: do this\n");
   EXPECT_EQ(Case("ab\tfoo", "foo").text(),
-            "a.pse:1:4: error: message [code]\n   1 | ab      foo\n     |         ^~~\n       help: do this\n");
+            "a.pse:1:4: error: message [code]\n   1 | ab      foo\n     |         ^~~\n       "
+            "help: do this\n");
   EXPECT_EQ(Case("\xc3\xa9 foo", "foo").text(),
-            "a.pse:1:3: error: message [code]\n   1 | \xc3\xa9 foo\n     |   ^~~\n       help: do this\n");
+            "a.pse:1:3: error: message [code]\n   1 | \xc3\xa9 foo\n     |   ^~~\n       help: do "
+            "this\n");
   // One letter, two columns.
   EXPECT_EQ(Case("\xe6\xb0\xb4 foo", "foo").text(),
-            "a.pse:1:3: error: message [code]\n   1 | \xe6\xb0\xb4 foo\n     |    ^~~\n       help: do this\n");
+            "a.pse:1:3: error: message [code]\n   1 | \xe6\xb0\xb4 foo\n     |    ^~~\n       "
+            "help: do this\n");
   // A letter and its accent, one column.
   EXPECT_EQ(Case("e\xcc\x81 foo", "foo").text(),
-            "a.pse:1:4: error: message [code]\n   1 | e\xcc\x81 foo\n     |   ^~~\n       help: do this\n");
+            "a.pse:1:4: error: message [code]\n   1 | e\xcc\x81 foo\n     |   ^~~\n       help: do "
+            "this\n");
 }
 
 TEST(PrintText, AnEmptyPlaceHasOneCaret) {
@@ -63,16 +72,19 @@ TEST(PrintText, AnEmptyPlaceHasOneCaret) {
   diagnostics.error("c", {file, 2, 2}, "m");
   diagnostics.error("c", {file, 3, 3}, "at the end");
   EXPECT_EQ(print_text(diagnostics, sources, false),
-            "f:1:3: error: m [c]\n   1 | ab\n     |   ^\nf:2:1: error: at the end [c]\n   2 | \n     | ^\n");
+            "f:1:3: error: m [c]\n   1 | ab\n     |   ^\nf:2:1: error: at the end [c]\n   2 | \n   "
+            "  | ^\n");
 }
 
 TEST(PrintText, APlaceOfSeveralLinesIsMarkedToTheEndOfItsFirst) {
-  EXPECT_EQ(Case("a = (1 +\n  2)\n", "(1 +\n  2)").text(),
-            "a.pse:1:5: error: message [code]\n   1 | a = (1 +\n     |     ^~~~\n       help: do this\n");
+  EXPECT_EQ(
+      Case("a = (1 +\n  2)\n", "(1 +\n  2)").text(),
+      "a.pse:1:5: error: message [code]\n   1 | a = (1 +\n     |     ^~~~\n       help: do this\n");
 }
 
 TEST(PrintText, LongLinesAreShownAroundTheCaret) {
-  const std::string text = Case(std::string(500, 'a') + "foo" + std::string(500, 'b'), "foo").text();
+  const std::string text =
+      Case(std::string(500, 'a') + "foo" + std::string(500, 'b'), "foo").text();
   std::size_t begin = 0;
   std::string source, caret;
   for (int line = 0; line < 3; ++line) {
@@ -89,7 +101,8 @@ TEST(PrintText, LongLinesAreShownAroundTheCaret) {
 }
 
 TEST(PrintText, NothingInATextSteersTheTerminal) {
-  const std::string text = Case("\x1b[31m foo \x07 \xe2\x80\xae \xff\xfe", "foo", "\x1b[2J.pse").text();
+  const std::string text =
+      Case("\x1b[31m foo \x07 \xe2\x80\xae \xff\xfe", "foo", "\x1b[2J.pse").text();
   EXPECT_EQ(text.find('\x1b'), std::string::npos);
   EXPECT_EQ(text.find('\x07'), std::string::npos);
   EXPECT_EQ(text.find("\xe2\x80\xae"), std::string::npos);

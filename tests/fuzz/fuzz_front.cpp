@@ -1,5 +1,6 @@
-// libFuzzer: any bytes as a program. The front end must refuse or accept them without a crash or a hang; what it
-// accepts must format to a text that parses, and formatting twice must change nothing more.
+// libFuzzer: any bytes as a program. The front end must refuse or accept them without a crash or a
+// hang; what it accepts must format to a text that parses, and formatting twice must change nothing
+// more.
 #include <cstdint>
 #include <cstdlib>
 

@@ -31,7 +31,8 @@ struct Parsed {
     std::string out;
     for (const Diagnostic& diagnostic : diagnostics.all()) {
       const LineColumn at = sources.position(diagnostic.span);
-      out += (out.empty() ? "" : ", ") + std::to_string(at.line) + ":" + std::to_string(at.column) + " " + diagnostic.code;
+      out += (out.empty() ? "" : ", ") + std::to_string(at.line) + ":" + std::to_string(at.column) +
+             " " + diagnostic.code;
     }
     return out;
   }

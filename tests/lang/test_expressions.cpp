@@ -68,7 +68,8 @@ TEST(Expressions, CallsElementsAndMembers) {
   EXPECT_EQ(expression("a[1][2].xy"), "(member (index (index a 1) 2) xy)");
   EXPECT_EQ(expression("a[n -1]"), "(index a (subtract n 1))");
   EXPECT_EQ(expression("timeCurve((0,0),(1,1))"), "(call timeCurve (tuple 0 0) (tuple 1 1))");
-  EXPECT_EQ(expression("texture(\"a.exr\", u, v, layer = \"N\")"), "(call texture \"a.exr\" u v layer=\"N\")");
+  EXPECT_EQ(expression("texture(\"a.exr\", u, v, layer = \"N\")"),
+            "(call texture \"a.exr\" u v layer=\"N\")");
 }
 
 TEST(Expressions, WordsThatMeanMoreInTheirPlaceAreNamesElsewhere) {
@@ -91,7 +92,8 @@ TEST(Expressions, SpansCoverTheirText) {
 TEST(Expressions, AloneAsOnTheCommandLine) {
   SourceMap sources;
   Diagnostics diagnostics;
-  const lang::ExprPtr value = lang::parse_expression(sources, sources.add("<arg>", "[1 -2] * 3"), diagnostics);
+  const lang::ExprPtr value =
+      lang::parse_expression(sources, sources.add("<arg>", "[1 -2] * 3"), diagnostics);
   ASSERT_TRUE(value);
   EXPECT_TRUE(std::holds_alternative<lang::BinaryExpr>(value->node));
   EXPECT_FALSE(lang::parse_expression(sources, sources.add("<arg>", "1 2"), diagnostics));

@@ -1,4 +1,5 @@
-// The formatter: layout, comments, and its two promises: the tree stays, and formatting twice changes nothing more.
+// The formatter: layout, comments, and its two promises: the tree stays, and formatting twice
+// changes nothing more.
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -25,7 +26,8 @@ void check_promises(const std::string& text) {
   ASSERT_TRUE(after.ok()) << text << "----\n" << once << after.printed();
   ASSERT_EQ(before.tree(), after.tree()) << text << "----\n" << once;
   ASSERT_EQ(once, after.formatted()) << text;
-  ASSERT_EQ(before.program.comments.size(), after.program.comments.size()) << text << "----\n" << once;
+  ASSERT_EQ(before.program.comments.size(), after.program.comments.size()) << text << "----\n"
+                                                                           << once;
 }
 
 }  // namespace
@@ -50,16 +52,19 @@ TEST(Format, BlocksStayAsTheyAre) {
   EXPECT_EQ(formatted("if (a) return 0\nelse return 1"), "if (a) return 0\nelse return 1\n");
   EXPECT_EQ(formatted("if a then b = 1"), "if a: b = 1\n");
   EXPECT_EQ(formatted("if a {b = 1;c = 2} else {d = 3}"), "if a { b = 1; c = 2 } else { d = 3 }\n");
-  EXPECT_EQ(formatted("if a\n{\nb = 1\n}\nelse\n{\nc = 1\n}"), "if a {\n    b = 1\n} else {\n    c = 1\n}\n");
+  EXPECT_EQ(formatted("if a\n{\nb = 1\n}\nelse\n{\nc = 1\n}"),
+            "if a {\n    b = 1\n} else {\n    c = 1\n}\n");
   EXPECT_EQ(formatted("if a {\n}"), "if a {\n}\n");
   EXPECT_EQ(formatted("action a {(X,1),(Y,2)}"), "action a { (X, 1), (Y, 2) }\n");
-  EXPECT_EQ(formatted("action a {\n T = 1;\n (X,1),\n jitter .3\n}"), "action a {\n    T = 1\n    (X, 1)\n    jitter .3\n}\n");
+  EXPECT_EQ(formatted("action a {\n T = 1;\n (X,1),\n jitter .3\n}"),
+            "action a {\n    T = 1\n    (X, 1)\n    jitter .3\n}\n");
   EXPECT_EQ(formatted("a = 1; b = 2"), "a = 1\nb = 2\n");
 }
 
 TEST(Format, ABodyOnTheHeadsLineNeverReadsAsPartOfTheHead) {
-  for (const char* text : {"if a: -b", "if a: (b, c)", "if (a): [1 2]", "while a: (f)", "if a: then = 1", "if a: not b",
-                           "function f(x): (x)", "if a: b\nelse: (c)", "for i in a: (b)"})
+  for (const char* text :
+       {"if a: -b", "if a: (b, c)", "if (a): [1 2]", "while a: (f)", "if a: then = 1",
+        "if a: not b", "function f(x): (x)", "if a: b\nelse: (c)", "for i in a: (b)"})
     check_promises(text);
   EXPECT_EQ(formatted("if (a) b = 1"), "if (a) b = 1\n");
   EXPECT_EQ(formatted("if (a): -b"), "if (a): -b\n");
@@ -67,7 +72,8 @@ TEST(Format, ABodyOnTheHeadsLineNeverReadsAsPartOfTheHead) {
 
 TEST(Format, CommentsAndBlankLinesStay) {
   const std::string text =
-      "# head\n\n# second\na = 1  # one\n\nif a  # if\n    # inside\n    b = 2  # two\n    # last inside\n"
+      "# head\n\n# second\na = 1  # one\n\nif a  # if\n    # inside\n    b = 2  # two\n    # last "
+      "inside\n"
       "# outside\nelse  # else\n    c = 3\n\n# before d\nd = 4\n\n# end\n";
   EXPECT_EQ(formatted(text), text);
   EXPECT_EQ(formatted("\n\na = 1\n\n\n\nb = 2\n\n"), "a = 1\n\nb = 2\n");
@@ -90,8 +96,8 @@ TEST(Format, LongLinesBreakInBrackets) {
   std::string rows;
   for (int i = 0; i < 7; ++i) rows += " " + row;
   EXPECT_EQ(formatted("color = spline(t, [" + rows + "])"),
-            "color = spline(t, [\n    " + row + " " + row + " " + row + " " + row + "\n    " + row + " " + row + " " + row +
-                "\n])\n");
+            "color = spline(t, [\n    " + row + " " + row + " " + row + " " + row + "\n    " + row +
+                " " + row + " " + row + "\n])\n");
   const std::string name(40, 'n');
   EXPECT_EQ(formatted("a = f(" + name + ", " + name + ", " + name + ")"),
             "a = f(\n    " + name + ", " + name + ",\n    " + name + "\n)\n");

@@ -13,7 +13,9 @@ std::string repeated(std::string_view piece, std::size_t times) {
   return out;
 }
 
-std::string brackets(std::size_t levels) { return "a = " + repeated("(", levels) + "1" + repeated(")", levels); }
+std::string brackets(std::size_t levels) {
+  return "a = " + repeated("(", levels) + "1" + repeated(")", levels);
+}
 
 std::string blocks(std::size_t levels) {
   std::string out;
@@ -38,7 +40,8 @@ TEST(Limits, Nesting) {
   EXPECT_EQ(Parsed("a = " + repeated("not ", levels - 1) + "b").summary(), "");
   EXPECT_EQ(Parsed("a = " + repeated("not ", levels) + "b").summary(), "1:801 nested-too-deep");
   EXPECT_EQ(Parsed("a = " + repeated("b ? c : ", levels - 1) + "d").summary(), "");
-  EXPECT_EQ(Parsed("a = " + repeated("b ? c : ", levels) + "d").summary(), "1:1601 nested-too-deep");
+  EXPECT_EQ(Parsed("a = " + repeated("b ? c : ", levels) + "d").summary(),
+            "1:1601 nested-too-deep");
 }
 
 TEST(Limits, HeightOfOneExpression) {
@@ -62,7 +65,8 @@ TEST(Limits, Nodes) {
 
 TEST(Limits, Words) {
   // Three words and the line's start each.
-  EXPECT_EQ(Parsed(repeated("x=\n", lang::max_words / 3 + 2)).diagnostics.all().back().code, "program-too-large");
+  EXPECT_EQ(Parsed(repeated("x=\n", lang::max_words / 3 + 2)).diagnostics.all().back().code,
+            "program-too-large");
 }
 
 TEST(Limits, Bytes) {
@@ -73,19 +77,45 @@ TEST(Limits, Bytes) {
 }
 
 TEST(Limits, BranchesOfOneIfHaveNone) {
-  EXPECT_EQ(Parsed("if a b = 1\n" + repeated("else if a b = 1\n", 5000) + "else b = 2\n").summary(), "");
+  EXPECT_EQ(Parsed("if a b = 1\n" + repeated("else if a b = 1\n", 5000) + "else b = 2\n").summary(),
+            "");
 }
 
 TEST(Limits, HostileTextsAreRefused) {
   const std::size_t many = 100'000;
   for (const std::string& text : {
-           repeated("(", many), repeated("[", many), repeated("{", many), repeated(")", many), repeated("]", many),
-           repeated("}", many), repeated("([{", many), repeated("a(", many), repeated("a[", many), repeated("if a ", many),
-           repeated("if a {", many), repeated("else ", many), repeated("a+", many), repeated("a.", many), repeated("-", many),
-           repeated("!", many), repeated("a?", many), repeated("a^", many), repeated("/*", many), repeated("\"", many),
-           repeated("(\n", many), repeated("{\n", many), repeated("function f(", many), repeated("a=b<", many),
-           repeated("\xff", many), repeated("\xff ", many), std::string(many, '\0'), repeated("\xc3", many),
-           repeated("\xe2\x88\x92", many), repeated("\t", many) + "a", repeated("a=[[", many), repeated("a=1[[b=", many),
+           repeated("(", many),
+           repeated("[", many),
+           repeated("{", many),
+           repeated(")", many),
+           repeated("]", many),
+           repeated("}", many),
+           repeated("([{", many),
+           repeated("a(", many),
+           repeated("a[", many),
+           repeated("if a ", many),
+           repeated("if a {", many),
+           repeated("else ", many),
+           repeated("a+", many),
+           repeated("a.", many),
+           repeated("-", many),
+           repeated("!", many),
+           repeated("a?", many),
+           repeated("a^", many),
+           repeated("/*", many),
+           repeated("\"", many),
+           repeated("(\n", many),
+           repeated("{\n", many),
+           repeated("function f(", many),
+           repeated("a=b<", many),
+           repeated("\xff", many),
+           repeated("\xff ", many),
+           std::string(many, '\0'),
+           repeated("\xc3", many),
+           repeated("\xe2\x88\x92", many),
+           repeated("\t", many) + "a",
+           repeated("a=[[", many),
+           repeated("a=1[[b=", many),
        }) {
     const Parsed parsed(text);
     EXPECT_FALSE(parsed.ok() && text.back() != 'a') << text.substr(0, 20);

@@ -1,4 +1,5 @@
-// Programs that are refused, or questioned: each file in refused/ says behind the lines concerned what is reported there,
+// Programs that are refused, or questioned: each file in refused/ says behind the lines concerned
+// what is reported there,
 //   # error: code @column "part of the suggestion"      # warning: code @column
 // and nothing else may be. The column counts characters.
 #include <filesystem>
@@ -55,7 +56,8 @@ void check(const std::filesystem::path& path) {
       EXPECT_EQ(found["code"], expected.code) << "line " << number;
       EXPECT_EQ(found["column"], expected.column) << "line " << number;
       const auto suggestion = found["suggestion"].get<std::string>();
-      EXPECT_NE(suggestion.find(expected.suggestion), std::string::npos) << "line " << number << ": " << suggestion;
+      EXPECT_NE(suggestion.find(expected.suggestion), std::string::npos)
+          << "line " << number << ": " << suggestion;
       if (::testing::Test::HasFailure()) return;
     }
   }
@@ -66,7 +68,8 @@ void check(const std::filesystem::path& path) {
 
 TEST(Refused, EachErrorAtItsPlaceWithItsSuggestion) {
   int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(PSE_SOURCE_DIR "/tests/lang/refused")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(PSE_SOURCE_DIR "/tests/lang/refused")) {
     check(entry.path());
     ++files;
   }
@@ -83,7 +86,9 @@ TEST(Refused, WhatIsMissingAtALinesEndIsMissingBehindItsLastWord) {
 
 TEST(Refused, AfterAnErrorTheRestIsRead) {
   const Parsed parsed("a = )\nb = 1\nif c = 2\n  d = (\ne = 3\n");
-  EXPECT_EQ(parsed.summary(), "1:4 unexpected-word, 1:5 stray-bracket, 3:6 assignment-in-condition, 4:7 unclosed-bracket");
+  EXPECT_EQ(
+      parsed.summary(),
+      "1:4 unexpected-word, 1:5 stray-bracket, 3:6 assignment-in-condition, 4:7 unclosed-bracket");
   EXPECT_NE(parsed.tree().find("set b 1"), std::string::npos);
   EXPECT_NE(parsed.tree().find("set e 3"), std::string::npos);
 }

@@ -41,7 +41,8 @@ TEST(Words, RangesKeepTheirDots) {
   EXPECT_EQ(expression("[1..5]"), "(range 1 5)");
   EXPECT_EQ(expression("[1 .. n]"), "(range 1 n)");
   EXPECT_EQ(expression("[1. .. .5]"), "(range 1 0.5)");
-  EXPECT_EQ(expression("[n - 1 .. n -1 by -1]"), "(range (subtract n 1) (subtract n 1) (negate 1))");
+  EXPECT_EQ(expression("[n - 1 .. n -1 by -1]"),
+            "(range (subtract n 1) (subtract n 1) (negate 1))");
 }
 
 TEST(Words, TextsHaveEscapes) {
@@ -64,7 +65,9 @@ TEST(Words, CommentsAreKeptWithTheirPlaces) {
 
 TEST(Words, LineEndsMayBeThoseOfWindows) {
   EXPECT_EQ(tree_of("if a\r\n  b = 1\r\nc = 2\r\n"), "if a\n  set b 1\nset c 2\n");
-  EXPECT_EQ(tree_of("\xef\xbb\xbf" "a = 1"), "set a 1\n");
+  EXPECT_EQ(tree_of("\xef\xbb\xbf"
+                    "a = 1"),
+            "set a 1\n");
 }
 
 TEST(Words, ATabReachesToTheNextMultipleOfEight) {

@@ -1,7 +1,8 @@
-// Random programs: valid, well-typed and ending, the same for the same seed on every machine. They drive the tests that
-// hold two ways of running a program against each other, and those of the formatter. They use numbers and vectors,
-// conditionals, loops with early ends, functions (with defaults, names and functions as arguments), arrays, swizzles,
-// noise, blocks once per frame, and arithmetic that meets NaN, infinity, subnormal numbers and both zeros.
+// Random programs: valid, well-typed and ending, the same for the same seed on every machine. They
+// drive the tests that hold two ways of running a program against each other, and those of the
+// formatter. They use numbers and vectors, conditionals, loops with early ends, functions (with
+// defaults, names and functions as arguments), arrays, swizzles, noise, blocks once per frame, and
+// arithmetic that meets NaN, infinity, subnormal numbers and both zeros.
 #pragma once
 
 #include <algorithm>
@@ -16,12 +17,13 @@ namespace pse::test {
 
 struct RandomProgramOptions {
   // Names that the stream brings, with their components; those once per frame.
-  std::vector<std::pair<std::string, int>> sample_inputs = {{"x", 1}, {"y", 1}, {"u", 1}, {"v", 1}, {"point", 3}};
+  std::vector<std::pair<std::string, int>> sample_inputs = {
+      {"x", 1}, {"y", 1}, {"u", 1}, {"v", 1}, {"point", 3}};
   std::vector<std::pair<std::string, int>> frame_inputs = {{"frame", 1}, {"time", 1}};
-  bool library = true;    // call functions of library/ too
+  bool library = true;  // call functions of library/ too
   bool arrays = true;
   bool functions = true;
-  int statements = 8;     // at top level, about
+  int statements = 8;  // at top level, about
 };
 
 class RandomProgram {
@@ -36,15 +38,15 @@ class RandomProgram {
  private:
   struct Variable {
     std::string name;
-    int components = 1;      // of it, or of an array's elements
+    int components = 1;  // of it, or of an array's elements
     bool settable = true;
-    int elements = 0;        // of an array; 0: no array
+    int elements = 0;  // of an array; 0: no array
   };
   struct Function {
     std::string name;
-    std::vector<int> parameters;      // components; 0 stands for a function of one argument
-    int default_from = 0;             // parameters from here on have defaults
-    int function_components = 1;      // of that function's argument and result
+    std::vector<int> parameters;  // components; 0 stands for a function of one argument
+    int default_from = 0;         // parameters from here on have defaults
+    int function_components = 1;  // of that function's argument and result
     int result = 1;
     int weight = 1;
   };
@@ -56,12 +58,12 @@ class RandomProgram {
   std::vector<Function> functions_;
   int names_ = 0;
   int indent_ = 0;
-  int loops_ = 0;         // around the current statement
-  int weight_ = 0;        // of the function being made, or of the program
-  int times_ = 1;         // how often the current statement runs at most
+  int loops_ = 0;   // around the current statement
+  int weight_ = 0;  // of the function being made, or of the program
+  int times_ = 1;   // how often the current statement runs at most
   bool in_function_ = false;
   bool frame_only_ = false;
-  int result_ = 1;        // components that the current function returns
+  int result_ = 1;  // components that the current function returns
 
   // ---- Chance ----
 
@@ -84,9 +86,9 @@ class RandomProgram {
 
   std::string number() {
     static constexpr std::array<std::string_view, 32> numbers = {
-        "0",    "1",     "2",       "3",      "0.5",  "0.25", ".1",    "7.5",   "1.",    "10",     "100",
-        "1e3",  "1e-3",  "3e38",    "1e-38",  "1e-44", "1e20", "0.333", "12.25", "16777217", "0.1", "0.7",
-        "4",    "5",     "1.5",     "2.5",    "0.9",  "0.99", "6",     "PI",    "TAU",   "E"};
+        "0",   "1",    "2",    "3",     "0.5",   "0.25", ".1",    "7.5",   "1.",       "10",  "100",
+        "1e3", "1e-3", "3e38", "1e-38", "1e-44", "1e20", "0.333", "12.25", "16777217", "0.1", "0.7",
+        "4",   "5",    "1.5",  "2.5",   "0.9",   "0.99", "6",     "PI",    "TAU",      "E"};
     if (chance(3)) return chance(50) ? "INF" : "NAN";
     if (chance(10)) return "(-" + pick(numbers) + ")";
     return pick(numbers);
@@ -95,7 +97,8 @@ class RandomProgram {
   std::string variable(int components) {
     std::vector<std::string> names;
     for (const Variable& variable : scope_)
-      if (variable.components == components && variable.elements == 0) names.push_back(variable.name);
+      if (variable.components == components && variable.elements == 0)
+        names.push_back(variable.name);
     if (names.empty()) return components == 1 ? number() : literal(components, 0);
     // The latest ones are read more often.
     const int count = static_cast<int>(names.size());
@@ -123,37 +126,56 @@ class RandomProgram {
   // A value that stands anywhere without parentheses of its own.
   std::string factor(int components, int depth) {
     ++weight_;
-    if (depth <= 0 || weight_ > 1500) return chance(components == 1 ? 35 : 15) ? constant(components) : variable(components);
+    if (depth <= 0 || weight_ > 1500)
+      return chance(components == 1 ? 35 : 15) ? constant(components) : variable(components);
     switch (below(12)) {
-      case 0: case 1: return variable(components);
-      case 2: return constant(components);
-      case 3: case 4: return call(components, depth - 1);
-      case 5: return components == 1 ? component(depth - 1) : literal(components, depth - 1);
-      case 6: return noise(components, depth - 1);
-      case 7: return own_function(components, depth - 1);
-      case 8: return swizzle(components, depth - 1);
-      case 9: return element(components);
-      default: return "(" + value(components, depth - 1, chance(30)) + ")";
+      case 0:
+      case 1:
+        return variable(components);
+      case 2:
+        return constant(components);
+      case 3:
+      case 4:
+        return call(components, depth - 1);
+      case 5:
+        return components == 1 ? component(depth - 1) : literal(components, depth - 1);
+      case 6:
+        return noise(components, depth - 1);
+      case 7:
+        return own_function(components, depth - 1);
+      case 8:
+        return swizzle(components, depth - 1);
+      case 9:
+        return element(components);
+      default:
+        return "(" + value(components, depth - 1, chance(30)) + ")";
     }
   }
 
-  std::string constant(int components) { return components == 1 ? number() : literal(components, 0); }
+  std::string constant(int components) {
+    return components == 1 ? number() : literal(components, 0);
+  }
 
   std::string value(int components, int depth, bool compact = false) {
     if (depth <= 0) return factor(components, 0);
     const auto side = [&](int other) {
       return other == 0 || components == 1 ? factor(components, depth - 1) : factor(1, depth - 1);
     };
-    static constexpr std::array<std::string_view, 10> operators = {"+", "-", "*", "*", "+", "-", "/", "/", "%", "^"};
+    static constexpr std::array<std::string_view, 10> operators = {"+", "-", "*", "*", "+",
+                                                                   "-", "/", "/", "%", "^"};
     switch (below(8)) {
-      case 0: return factor(components, depth);
-      case 1: return "-" + factor(components, depth - 1);
+      case 0:
+        return factor(components, depth);
+      case 1:
+        return "-" + factor(components, depth - 1);
       case 2: {
         const std::string test = condition(depth - 1);
         const std::string one = value(components, depth - 1);
         return "(" + test + " ? " + one + " : " + value(components, depth - 1) + ")";
       }
-      case 3: if (components == 1) return "(" + condition(depth - 1) + ") * " + factor(1, depth - 1); [[fallthrough]];
+      case 3:
+        if (components == 1) return "(" + condition(depth - 1) + ") * " + factor(1, depth - 1);
+        [[fallthrough]];
       default: {
         const int scalar_side = below(3);  // 1: left, 2: right
         const std::string left = side(scalar_side == 1);
@@ -165,14 +187,20 @@ class RandomProgram {
   }
 
   std::string condition(int depth) {
-    static constexpr std::array<std::string_view, 8> comparisons = {" < ", " <= ", " > ", " >= ", " == ", " != ", " < ", " > "};
+    static constexpr std::array<std::string_view, 8> comparisons = {
+        " < ", " <= ", " > ", " >= ", " == ", " != ", " < ", " > "};
     if (depth > 0) {
       switch (below(8)) {
-        case 0: return "(" + condition(depth - 1) + ") and " + condition(depth - 1);
-        case 1: return condition(depth - 1) + " or (" + condition(depth - 1) + ")";
-        case 2: return "not (" + condition(depth - 1) + ")";
-        case 3: return "isnan(" + value(1, depth - 1) + ")";
-        default: break;
+        case 0:
+          return "(" + condition(depth - 1) + ") and " + condition(depth - 1);
+        case 1:
+          return condition(depth - 1) + " or (" + condition(depth - 1) + ")";
+        case 2:
+          return "not (" + condition(depth - 1) + ")";
+        case 3:
+          return "isnan(" + value(1, depth - 1) + ")";
+        default:
+          break;
       }
     }
     const std::string left = factor(1, depth);
@@ -183,15 +211,21 @@ class RandomProgram {
   // A built-in function, or one of the library.
   std::string call(int components, int depth) {
     static constexpr std::array<std::string_view, 30> of_one = {
-        "abs", "sign", "floor", "ceil", "round", "trunc", "fract", "sqrt", "cbrt", "exp", "exp2", "expm1", "log",
-        "log2", "log10", "log1p", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "sin", "cos",
-        "abs", "floor", "sqrt"};
+        "abs",  "sign",  "floor", "ceil", "round", "trunc", "fract", "sqrt", "cbrt",  "exp",
+        "exp2", "expm1", "log",   "log2", "log10", "log1p", "sin",   "cos",  "tan",   "asin",
+        "acos", "atan",  "sinh",  "cosh", "tanh",  "sin",   "cos",   "abs",  "floor", "sqrt"};
     static constexpr std::array<std::string_view, 5> of_two = {"min", "max", "pow", "atan2", "min"};
     const std::string a = value(components, depth);
     switch (below(10)) {
-      case 0: case 1: case 2: return pick(of_one) + "(" + a + ")";
-      case 3: case 4: return pick(of_two) + "(" + a + ", " + value(components, depth) + ")";
-      case 5: return "select(" + condition(depth) + ", " + a + ", " + value(components, depth) + ")";
+      case 0:
+      case 1:
+      case 2:
+        return pick(of_one) + "(" + a + ")";
+      case 3:
+      case 4:
+        return pick(of_two) + "(" + a + ", " + value(components, depth) + ")";
+      case 5:
+        return "select(" + condition(depth) + ", " + a + ", " + value(components, depth) + ")";
       case 6:
         if (!options_.library) return "abs(" + a + ")";
         return "clamp(" + a + ", " + number() + ", " + number() + ")";
@@ -199,7 +233,9 @@ class RandomProgram {
         if (!options_.library) return "fract(" + a + ")";
         return "lerp(" + factor(1, depth) + ", " + a + ", " + value(components, depth) + ")";
       case 8:
-        if (components != 1) return "fma(" + a + ", " + value(components, depth) + ", " + value(components, depth) + ")";
+        if (components != 1)
+          return "fma(" + a + ", " + value(components, depth) + ", " + value(components, depth) +
+                 ")";
         return reduction(depth);
       default:
         if (components != 1) return "floor(" + a + ")";
@@ -209,14 +245,16 @@ class RandomProgram {
 
   // A number out of vectors.
   std::string reduction(int depth) {
-    static constexpr std::array<std::string_view, 5> of_one = {"norm", "sum", "product", "min", "max"};
+    static constexpr std::array<std::string_view, 5> of_one = {"norm", "sum", "product", "min",
+                                                               "max"};
     const int n = 2 + below(3);
     if (chance(35)) return "dot(" + value(n, depth) + ", " + value(n, depth) + ")";
     return pick(of_one) + "(" + value(n, depth) + ")";
   }
 
   std::string noise(int components, int depth) {
-    static constexpr std::array<std::string_view, 6> of_number = {"Noise", "snoise", "unoise", "unoise", "hash", "Noise"};
+    static constexpr std::array<std::string_view, 6> of_number = {"Noise",  "snoise", "unoise",
+                                                                  "unoise", "hash",   "Noise"};
     const int n = 1 + below(3);
     const std::string argument = value(n, depth > 1 ? 1 : depth);
     if (components == 3 && chance(60)) {
@@ -245,7 +283,8 @@ class RandomProgram {
     for (const Variable& variable : scope_) {
       if (variable.elements == 0 || variable.components != components || chance(50)) continue;
       const std::string n = std::to_string(variable.elements);
-      if (chance(60)) return variable.name + "[" + std::to_string(1 + below(variable.elements)) + "]";
+      if (chance(60))
+        return variable.name + "[" + std::to_string(1 + below(variable.elements)) + "]";
       return variable.name + "[" + condition(0) + " ? " + n + " : 1]";
     }
     return variable(components);
@@ -254,13 +293,16 @@ class RandomProgram {
   std::string own_function(int components, int depth) {
     std::vector<const Function*> fitting;
     for (const Function& function : functions_)
-      if (function.result == components && weight_ + function.weight * times_ < 1500) fitting.push_back(&function);
+      if (function.result == components && weight_ + function.weight * times_ < 1500)
+        fitting.push_back(&function);
     if (fitting.empty() || frame_only_) return call(components, depth);
-    const Function& function = *fitting[static_cast<std::size_t>(below(static_cast<int>(fitting.size())))];
+    const Function& function =
+        *fitting[static_cast<std::size_t>(below(static_cast<int>(fitting.size())))];
     weight_ += function.weight;
     std::string out = function.name + "(";
     for (std::size_t i = 0; i < function.parameters.size(); ++i) {
-      const bool optional = function.default_from > 0 && static_cast<int>(i) >= function.default_from;
+      const bool optional =
+          function.default_from > 0 && static_cast<int>(i) >= function.default_from;
       if (optional && chance(50)) break;
       if (i > 0) out += ", ";
       if (function.parameters[i] == 0)
@@ -274,10 +316,11 @@ class RandomProgram {
 
   // The name of a function from `components` to as many.
   std::string mapping(int components) {
-    static constexpr std::array<std::string_view, 6> of_any = {"sin", "cos", "abs", "floor", "sqrt", "exp"};
+    static constexpr std::array<std::string_view, 6> of_any = {"sin",   "cos",  "abs",
+                                                               "floor", "sqrt", "exp"};
     for (const Function& function : functions_)
-      if (function.parameters.size() == 1 && function.parameters[0] == components && function.result == components &&
-          chance(60))
+      if (function.parameters.size() == 1 && function.parameters[0] == components &&
+          function.result == components && chance(60))
         return function.name;
     return pick(of_any);
   }
@@ -322,8 +365,10 @@ class RandomProgram {
     for (const Variable& variable : scope_)
       if (variable.settable && variable.elements == 0) settable.push_back(&variable);
     if (settable.empty()) return introduce();
-    const Variable target = *settable[static_cast<std::size_t>(below(static_cast<int>(settable.size())))];
-    static constexpr std::array<std::string_view, 6> operators = {" = ", " += ", " -= ", " *= ", " /= ", " = "};
+    const Variable target =
+        *settable[static_cast<std::size_t>(below(static_cast<int>(settable.size())))];
+    static constexpr std::array<std::string_view, 6> operators = {
+        " = ", " += ", " -= ", " *= ", " /= ", " = "};
     const std::string op = pick(operators);
     const int n = target.components;
     if (n > 1 && chance(25)) {
@@ -348,14 +393,16 @@ class RandomProgram {
         line(name + "[" + i + "] = " + value(n, 2));
       });
     } else {
-      for (int e = 1; e <= elements; ++e) line(name + "[" + std::to_string(e) + "] = " + value(n, 1));
+      for (int e = 1; e <= elements; ++e)
+        line(name + "[" + std::to_string(e) + "] = " + value(n, 1));
     }
     scope_.push_back({name, n, false, elements});
   }
 
   void choice(int depth) {
     block("if " + condition(2), [&] { statements(1 + below(2), depth - 1); });
-    if (chance(30)) block((chance(50) ? "else if " : "elif ") + condition(1), [&] { statements(1, depth - 1); });
+    if (chance(30))
+      block((chance(50) ? "else if " : "elif ") + condition(1), [&] { statements(1, depth - 1); });
     if (chance(50)) block("else", [&] { statements(1 + below(2), depth - 1); });
   }
 
@@ -374,10 +421,18 @@ class RandomProgram {
     int components = 1, turns = 3;
     std::string sequence;
     switch (below(5)) {
-      case 0: sequence = "[1 .. " + std::to_string(1 + below(4)) + "]"; break;
-      case 1: sequence = "[1 .. (" + condition(1) + " ? 2 : 4)]"; break;
-      case 2: sequence = "[0.5 .. -1 by -0.5]"; break;
-      case 3: sequence = literal(3, 1); break;
+      case 0:
+        sequence = "[1 .. " + std::to_string(1 + below(4)) + "]";
+        break;
+      case 1:
+        sequence = "[1 .. (" + condition(1) + " ? 2 : 4)]";
+        break;
+      case 2:
+        sequence = "[0.5 .. -1 by -0.5]";
+        break;
+      case 3:
+        sequence = literal(3, 1);
+        break;
       default: {
         sequence = "[3 .. 1]";
         for (const Variable& variable : scope_)
@@ -443,7 +498,8 @@ class RandomProgram {
       // A parameter may be set; the one with a default keeps its kind.
       if (!is_function) scope_.push_back({name, function.parameters.back()});
     }
-    for (const auto& [name, components] : options_.sample_inputs) scope_.push_back({name, components, false});
+    for (const auto& [name, components] : options_.sample_inputs)
+      scope_.push_back({name, components, false});
 
     const int outer = weight_;
     weight_ = 0;
@@ -472,7 +528,8 @@ class RandomProgram {
     weight_ = 0;
 
     // What holds for a whole frame: knobs, and a block that is computed once.
-    for (const auto& [name, components] : options_.frame_inputs) scope_.push_back({name, components, false});
+    for (const auto& [name, components] : options_.frame_inputs)
+      scope_.push_back({name, components, false});
     if (chance(40)) {
       const std::string knob = fresh("Knob");
       line(knob + " = 0.3 [[ min = 0, max = 1, label = \"a knob\" ]]");
@@ -487,7 +544,8 @@ class RandomProgram {
       --indent_;
       frame_only_ = false;
     }
-    for (const auto& [name, components] : options_.sample_inputs) scope_.push_back({name, components, false});
+    for (const auto& [name, components] : options_.sample_inputs)
+      scope_.push_back({name, components, false});
     statements(options_.statements / 2 + below(options_.statements), 2);
     introduce();
   }

@@ -67,8 +67,9 @@ Arguments parse_arguments(const CommandSpec& command, const std::vector<std::str
     else if (option.takes == Takes::optional)
       known[name] = parser.add_flag(fmt::format("--{}{{{}}}", option.name, option.choices.front()), values[name]);
     else
-      known[name] = parser.add_option(cli_names(option), values[name])->type_size(1)->expected(1, 1 << 20)
-                        ->allow_extra_args(false)->take_all();
+      known[name] = parser.add_option(cli_names(option), values[name])
+                        ->allow_extra_args(false)
+                        ->take_all();
   }
 
   // Parse. CLI11 wants the words in reverse order.

@@ -59,6 +59,7 @@ void FrameWriter::add(const TileView& tile) {
 
     // Keep a copy for snapshots.
     if (!file.copy) continue;
+    const std::lock_guard lock(copying_);
     for (std::size_t c = 0; c < file.planes.size(); ++c)
       for (int row = 0; row < tile.rect.height(); ++row)
         std::copy_n(file.planes[c] + std::ptrdiff_t{row} * tile.rect.width(), tile.rect.width(),
@@ -67,8 +68,9 @@ void FrameWriter::add(const TileView& tile) {
   }
 }
 
-std::vector<std::string> FrameWriter::write_snapshots() const {
+std::vector<std::string> FrameWriter::write_snapshots() {
   std::vector<std::string> names;
+  const std::lock_guard lock(copying_);
   for (const File& file : files_) {
     if (!file.copy) continue;
     names.push_back(snapshot_name(file.name));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "app/output_plan.h"
@@ -24,9 +25,9 @@ class FrameWriter {
 
   // Takes tiles in order, one at a time. Throws Failure: `output`, or `strict` for NaN under --nan error.
   void add(const TileView& tile);
-  // Writes what has come so far beside each target, as NAME.snapshot.EXT. Returns the names; none for pictures too large
-  // to be kept in memory.
-  std::vector<std::string> write_snapshots() const;
+  // Writes what has come so far beside each target, as NAME.snapshot.EXT; may be called while tiles come. Returns the
+  // names; none for pictures too large to be kept in memory.
+  std::vector<std::string> write_snapshots();
   // Puts the files in their places and returns their names. Throws as add().
   std::vector<std::string> close();
 
@@ -45,6 +46,7 @@ class FrameWriter {
   Rect window_;
   image::Window data_;
   std::vector<File> files_;
+  std::mutex copying_;  // of the copies
 };
 
 // "dir/out.exr" -> "dir/out.snapshot.exr"

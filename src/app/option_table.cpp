@@ -39,7 +39,7 @@ std::vector<OptionSpec> render_options() {
       {"", "params", many, "FILE", "set knobs from a file: TOML, or lines of `Name value`", {}, Offer::file},
       include,
       {"", "layers", one, "NAMES", "write only these variables, separated by commas"},
-      {"", "format", one, "NAME", "format of a picture on standard output; default exr", {"exr", "png"}},
+      {"", "format", one, "NAME", "format of a picture whose name does not say it; on standard output default exr", {"exr", "png"}},
       {"", "half", nothing, "", "EXR: store every channel in 16 bits"},
       {"", "float", nothing, "", "EXR: store every channel in 32 bits"},
       {"", "bits", one, "N", "PNG: bits of a channel; default 8", {"8", "16"}},

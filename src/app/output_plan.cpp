@@ -15,7 +15,8 @@ namespace {
 
 std::string format_of(const OutputRequest& request, const image::WriteOptions& write) {
   if (request.file == "-") return write.format.empty() ? "exr" : write.format;
-  return image::format_of_name(request.file);
+  const std::string format = image::format_of_name(request.file);
+  return format.empty() ? write.format : format;
 }
 
 bool is_display(const OutputRequest& request, const image::WriteOptions& write) {

@@ -164,10 +164,12 @@ FrameState RenderJob::frame_state() const {
 
 RunResult RenderJob::compute(const TileSource& source, FrameWriter* writer, RunStatus& status) {
   const auto sink = [&](const TileView& tile) {
-    if (writer == nullptr) return;
-    writer->add(tile);
-    if (signals_.take_snapshot_request())
-      for (const std::string& name : writer->write_snapshots()) session_.console.note(fmt::format("wrote {}", name));
+    if (writer != nullptr) writer->add(tile);
+  };
+  // Called now and then, also while no tile is finished.
+  const auto progress = [&](double done) {
+    progress_.update(done);
+    if (writer != nullptr && signals_.take_snapshot_request()) write_snapshots(*writer);
   };
   const int tile = choose_tile(options_, window_);
   FrameState state = frame_state();
@@ -177,9 +179,19 @@ RunResult RenderJob::compute(const TileSource& source, FrameWriter* writer, RunS
                   .tile_height = tile,
                   .threads = options_.threads,
                   .ordered_sink = writer != nullptr,
-                  .progress = [this](double done) { progress_.update(done); },
+                  .progress = progress,
                   .memory_limit = tile_memory},
                  status);
+}
+
+void RenderJob::write_snapshots(FrameWriter& writer) {
+  try {
+    const std::vector<std::string> names = writer.write_snapshots();
+    if (names.empty()) session_.console.warning("the picture is too large for snapshots");
+    for (const std::string& name : names) session_.console.note(fmt::format("wrote {}", name));
+  } catch (const Failure& failure) {
+    session_.console.warning(failure.what());  // the job goes on
+  }
 }
 
 // A later frame's images must bring what the program was compiled for.

@@ -28,6 +28,7 @@ class RenderJob {
   bool skip_done(int frame, const std::vector<std::string>& recipes) const;
   FrameState frame_state() const;
   RunResult compute(const TileSource& source, FrameWriter* writer, RunStatus& status);
+  void write_snapshots(FrameWriter& writer);
   void check_channels() const;
   void report_failure(const RunResult& result, int frame);
   void report_not_finite(const FrameWriter& writer);

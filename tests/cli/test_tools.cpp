@@ -1,0 +1,100 @@
+// check, fmt, info, doc, diff.
+#include "run_pse.h"
+
+namespace pse::test {
+namespace {
+
+class Tools : public CommandLine {};
+
+TEST_F(Tools, CheckReportsAllErrorsOfAllFiles) {
+  file("good.pse", "color = fg.color * bg.alpha\n");
+  file("bad.pse", "color = wite * x\nheat = sinn(x)\n");
+  Ended ended = pse({"check", "good.pse"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  ended = pse({"check", "good.pse", "bad.pse"});
+  EXPECT_EQ(ended.status, 3);
+  EXPECT_TRUE(contains(ended.err, "bad.pse:1:9"));
+  EXPECT_TRUE(contains(ended.err, "`white`"));
+  EXPECT_TRUE(contains(ended.err, "bad.pse:2:8"));
+  ended = pse({"check", "--json", "good.pse", "bad.pse"});
+  EXPECT_EQ(ended.status, 3);
+  EXPECT_TRUE(contains(ended.out, "\"line\""));
+  EXPECT_EQ(ended.err, "");
+  EXPECT_EQ(pse({"check", "--json", "good.pse"}).out, "[]\n");
+  EXPECT_EQ(pse({"check"}).status, 2);
+  EXPECT_EQ(pse({"check", "missing.pse"}).status, 4);
+  EXPECT_EQ(pse({"check", "-"}, "color = white\n").status, 0);
+}
+
+TEST_F(Tools, WarningsCanBeErrorsOrHidden) {
+  file("a.pse", "Level = 1 [[ colour = 3 ]]\ncolor = white * Level\n");
+  EXPECT_EQ(pse({"check", "a.pse"}).status, 0);
+  EXPECT_TRUE(contains(pse({"check", "a.pse"}).err, "warning"));
+  EXPECT_EQ(pse({"check", "-Werror", "a.pse"}).status, 6);
+  EXPECT_EQ(pse({"check", "-Werror", "-Wno-unknown-meta", "a.pse"}).status, 0);
+  EXPECT_EQ(pse({"check", "-Werror", "-Wnone", "a.pse"}).status, 0);
+}
+
+TEST_F(Tools, FormatPrintsRewritesOrChecks) {
+  file("a.pse", "color=white*x\n");
+  const Ended printed = pse({"fmt", "a.pse"});
+  EXPECT_EQ(printed.out, "color = white * x\n");
+  EXPECT_EQ(read("a.pse"), "color=white*x\n");
+  EXPECT_EQ(pse({"fmt", "-"}, "color=white*x\n").out, printed.out);
+  EXPECT_EQ(pse({"fmt", "--check", "a.pse"}).status, 6);
+  EXPECT_EQ(pse({"fmt", "-i", "a.pse"}).status, 0);
+  EXPECT_EQ(read("a.pse"), printed.out);
+  EXPECT_EQ(pse({"fmt", "--check", "a.pse"}).status, 0);
+  file("bad.pse", "color = (\n");
+  EXPECT_EQ(pse({"fmt", "-i", "bad.pse"}).status, 3);
+  EXPECT_EQ(read("bad.pse"), "color = (\n");
+  EXPECT_EQ(pse({"fmt", "--check", "-i", "a.pse"}).status, 2);
+}
+
+TEST_F(Tools, InfoOfProgramsAndImages) {
+  file("a.pse", "Level = 1 [[ min = 0, help = \"how much\" ]]\ncolor = [x Level time]\n");
+  Ended ended = pse({"info", "a.pse"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  for (const char* part : {"x", "time", "color[3]", "per sample", "Level=1", "how much"}) EXPECT_TRUE(contains(ended.out, part));
+  ended = pse({"info", "--json", "a.pse"});
+  EXPECT_TRUE(contains(ended.out, "\"knob\": \"Level\""));
+  ASSERT_EQ(pse({"render", "a.pse", "-o", "a.exr", "--res", "7x5"}).status, 0);
+  ended = pse({"info", "a.exr"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_TRUE(contains(ended.out, "7"));
+  EXPECT_TRUE(contains(ended.out, "Level=1"));
+  EXPECT_TRUE(contains(pse({"info", "--json", "a.exr"}).out, "\"width\": 7"));
+  file("empty.exr", "");
+  EXPECT_EQ(pse({"info", "empty.exr"}).status, 4);
+  EXPECT_EQ(pse({"info", "missing.exr"}).status, 4);
+}
+
+TEST_F(Tools, DocumentationOfEverythingListed) {
+  const Ended list = pse({"doc", "--list"});
+  EXPECT_EQ(list.status, 0);
+  for (const char* name : {"Noise", "turbulence", "bias", "gain", "lerp", "point", "begin_frame"})
+    EXPECT_TRUE(contains(list.out, std::string(name) + "\n"));
+  const Ended ended = pse({"doc", "turbulence", "Noise"});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_TRUE(contains(ended.out, "turbulence("));
+  EXPECT_TRUE(contains(ended.out, "Noise("));
+  // Everything has a text.
+  const std::string json = pse({"doc", "--json"}).out;
+  EXPECT_EQ(json.find("\"text\": \"\""), std::string::npos);
+}
+
+TEST_F(Tools, DiffToleratesWhatItIsToldTo) {
+  file("a.pse", "Level = 0\ncolor = [Level 0 0]\n");
+  for (const char* level : {"0", "0.25"})
+    ASSERT_EQ(pse({"render", "a.pse", "-o", std::string(level) + ".exr", "--res", "3x3", "--float", std::string("Level=") + level}).status, 0);
+  Ended ended = pse({"diff", "0.exr", "0.25.exr", "-o", "d.exr"});
+  EXPECT_EQ(ended.status, 6);
+  EXPECT_TRUE(contains(ended.out, "0.25"));
+  EXPECT_EQ(picture("d.exr").at(picture("d.exr").spec.find("R"), 2, 2), 0.25f);
+  EXPECT_EQ(pse({"diff", "0.exr", "0.25.exr", "--tolerance", "0.3"}).status, 0);
+  EXPECT_EQ(pse({"diff", "0.exr", "missing.exr"}).status, 4);
+  EXPECT_EQ(pse({"diff", "0.exr"}).status, 2);
+}
+
+}  // namespace
+}  // namespace pse::test

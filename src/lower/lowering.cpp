@@ -207,8 +207,9 @@ void Lowering::read_meta(Knob& knob, const AssignStmt& assign) {
 
 void Lowering::make_outputs(Lowered& result) {
   for (const std::string& name : output_order_) {
+    // Single capitals are layers with names that pictures have always used: N, P, Z.
     const char first = name.front();
-    if (first == '_' || (first >= 'A' && first <= 'Z')) continue;
+    if (first == '_' || (first >= 'A' && first <= 'Z' && name.size() > 1)) continue;
     const auto found = variables().find(name);
     if (found == variables().end()) continue;
     const Typed value = to_number(found->second);

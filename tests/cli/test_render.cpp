@@ -208,7 +208,7 @@ TEST_F(Render, ProvenanceUnlessLeftOut) {
 }
 
 TEST_F(Render, VariablesGoWhereTheyAreSent) {
-  file("a.pse", "color = [1 0 0]\nalpha = 0.5\nN = [0 1 0]\nheat = u\n");
+  file("a.pse", "color = [1 0 0]\nalpha = 0.5\nN = [x 1 0]\nheat = u\n");
   ASSERT_EQ(pse({"render", "a.pse", "-o", "all.exr", "-o", "heat=heat.png", "-o", "N,heat=data.exr", "-o", "c.png",
                  "--res", "4x4"}).status, 0);
   EXPECT_GE(picture("all.exr").spec.find("N.X"), 0);

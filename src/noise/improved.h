@@ -22,13 +22,6 @@ F improved_from(const Cell<F, N>& cell, const std::array<F, N>& fade, const Corn
   });
 }
 
-template <class F, std::size_t N>
-std::array<F, N> quintic_fades(const Cell<F, N>& cell) {
-  std::array<F, N> fade;
-  for (std::size_t axis = 0; axis < N; ++axis) fade[axis] = quintic_fade(cell.offset[0][axis]);
-  return fade;
-}
-
 // The signed noise at a point; 0 wherever all coordinates are whole.
 template <class F, std::size_t N>
 F improved_noise(const std::array<F, N>& point, const NoiseOptions<BaseOf<F>, N>& options = {}) {

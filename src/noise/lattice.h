@@ -87,22 +87,28 @@ AxisBytes<IntOf<F>> axis_bytes(std::size_t axis, const F& corner) {
   return {repeated, {}};
 }
 
+// A cell's low and high corner on one axis, counted modulo a period of 1 to `longest`; 0 or less means the longest.
+template <class F>
+std::array<IntOf<F>, 2> wrap(const F& corner, const F& period, float longest) {
+  const F rounded = round(period);
+  const F whole = select(rounded > 0.0f, min(rounded, F(longest)), F(longest));
+  const F low = fma(-floor(corner / whole), whole, corner);
+  const F high = low + 1.0f;
+  return {to_int(low), to_int(select(high == whole, F(0.0f), high))};
+}
+
 // Lattice coordinates modulo a period.
 template <class F>
 AxisBytes<IntOf<F>> axis_bytes(std::size_t axis, const F& corner, const F& period) {
-  const F rounded = round(period);
-  const F whole = select(rounded > 0.0f, min(rounded, 256.0f), F(256.0f));
-  const F first = fma(-floor(corner / whole), whole, corner);
-  const F second = first + 1.0f;
   using I = IntOf<F>;
-  const I low = to_int(first) & I(255);
-  const I high = to_int(select(second == whole, F(0.0f), second)) & I(255);
+  const auto wrapped = wrap(corner, period, 256.0f);
+  const I low = wrapped[0] & I(255), high = wrapped[1] & I(255);
   if (axis == 0) return {low * I(0x00010001) + high * I(0x01000100), {}};
   if (axis == 1) return {low * I(0x00000101) + high * I(0x01010000), {}};
   return {low * I(every_byte), high * I(every_byte)};
 }
 
-// The bytes 1 in all four places of byte `level` of a key.
+// Byte `level` of a key in all four places.
 template <class I>
 I key_bytes(const I& key, int level) {
   return ((key >> I(8 * level)) & I(255)) * I(every_byte);
@@ -117,6 +123,20 @@ I permute(const ByteTable& table, const I& word, const std::optional<I>& key, in
     result = select(*key == I(0), result, lookup(table, result ^ key_bytes(*key, level + i)));
   }
   return result;
+}
+
+// How far the point has come from the low to the high corner along each axis, by a fade.
+template <class F, std::size_t N>
+std::array<F, N> quintic_fades(const Cell<F, N>& cell) {
+  std::array<F, N> fade;
+  for (std::size_t axis = 0; axis < N; ++axis) fade[axis] = quintic_fade(cell.offset[0][axis]);
+  return fade;
+}
+template <class F, std::size_t N>
+std::array<F, N> cubic_fades(const Cell<F, N>& cell) {
+  std::array<F, N> fade;
+  for (std::size_t axis = 0; axis < N; ++axis) fade[axis] = cubic_fade(cell.offset[0][axis]);
+  return fade;
 }
 
 // The hashes of a cell's corners, a byte each, four to a word: corner c in byte c mod 4 of word c / 4.

@@ -60,7 +60,7 @@ constexpr std::array<float, 32> w4 = {
     1, 1, 1, 1, -1, -1, -1, -1, 0, 0, 0, 0, 0, 0, 0, 0,
 };
 
-// 2/pi behind the point, and its windows of twelve bits.
+// 2/pi behind the point, and its windows of twenty-four bits.
 constexpr std::array<std::uint32_t, 8> two_over_pi_bits = {0xa2f9836e, 0x4e441529, 0xfc2757d1, 0xf534ddc0,
                                                            0xdb629599, 0x3c439041, 0xfe5163ab, 0};
 constexpr int bit_of_two_over_pi(int i) {
@@ -70,7 +70,7 @@ constexpr int bit_of_two_over_pi(int i) {
 constexpr std::array<std::int32_t, 256> two_over_pi_windows = [] {
   std::array<std::int32_t, 256> windows{};
   for (int start = 0; start < 256; ++start) {
-    for (int i = 0; i < 12; ++i) {
+    for (int i = 0; i < 24; ++i) {
       auto& window = windows[static_cast<std::size_t>(start)];
       window = 2 * window + bit_of_two_over_pi(start - two_over_pi_lead + i);
     }

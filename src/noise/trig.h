@@ -31,7 +31,11 @@ std::array<F, 2> reduce_large_angle(const F& x) {
   // The window begins at bit s - 1 behind the point of 2/pi, s = exponent - 150.
   const I begin = ((all >> I(23)) & I(255)) - I(151 - two_over_pi_lead);
   std::array<I, digits> window;
-  for (int k = 0; k < digits; ++k) window[k] = lookup(two_over_pi, begin + I(12 * k));
+  for (int k = 0; k < digits; k += 2) {
+    const I two = lookup(two_over_pi, begin + I(12 * k));
+    window[k] = two >> I(12);
+    window[k + 1] = two & I(0xfff);
+  }
   // Multiply, with carries from the last digit to the first.
   std::array<I, digits> product;
   I carry = 0;

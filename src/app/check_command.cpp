@@ -1,15 +1,40 @@
-// `pse check`: errors and warnings of programs.
+// `pse check`: errors and warnings of programs. With images among the arguments, their channels are what may be read.
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "app/input_images.h"
 #include "app/program_file.h"
+#include "app/render_job.h"
 #include "app/report.h"
 
 namespace pse::app {
+namespace {
+
+// The names that the images among the arguments bring; the programs go to `programs`.
+std::vector<StreamName> image_names(const Session& session, std::vector<std::string>& programs) {
+  RenderOptions options;
+  for (const std::string& word : session.arguments.positionals) {
+    const std::size_t equals = word.find('=');
+    const bool is_program = word == "-" || word.ends_with(".pse");
+    if (is_program)
+      programs.push_back(word);
+    else if (equals == std::string::npos)
+      options.images.push_back({"", word});
+    else
+      options.images.push_back({word.substr(0, equals), word.substr(equals + 1)});
+  }
+  if (options.images.empty()) return {};
+  InputImages images(options, session);
+  images.open(choose_frames(options).front());
+  return images.names();
+}
+
+}  // namespace
 
 Exit check_command(Session& session) {
-  const auto& names = session.arguments.positionals;
+  std::vector<std::string> names;
+  const std::vector<StreamName> images = image_names(session, names);
   if (names.empty()) throw usage_error("check needs a program", "pse check PROGRAM...");
   if (std::count(names.begin(), names.end(), "-") > 1) throw usage_error("standard input can be read only once");
   const WarningPolicy policy = warning_policy(session.arguments);
@@ -20,7 +45,7 @@ Exit check_command(Session& session) {
   for (const std::string& name : names) {
     ProgramFile program = read_program(name, session);
     Diagnostics found;
-    survey(program, module_host(program.path, session), found);
+    survey(program, module_host(program.path, session), found, images);
     const Diagnostics shown = filtered(found, policy);
     if (json) {
       // Join the files' arrays into one.

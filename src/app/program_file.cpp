@@ -44,12 +44,13 @@ LowerHost module_host(const std::string& program_path, const Session& session) {
   return host;
 }
 
-Lowered survey(ProgramFile& program, const LowerHost& host, Diagnostics& diagnostics) {
+Lowered survey(ProgramFile& program, const LowerHost& host, Diagnostics& diagnostics,
+               const std::vector<StreamName>& images) {
   const lang::Program tree = lang::parse(program.sources, program.file, diagnostics);
   if (diagnostics.has_errors()) return {};
   LowerOptions options;
-  options.stream = image_plane_names();
-  for (const StreamName& name : image_names_read(tree)) options.stream.push_back(name);
+  options.stream = images.empty() ? image_names_read(tree) : images;
+  for (const StreamName& name : image_plane_names()) options.stream.push_back(name);
   return lower_program(program.sources, tree, host, options, diagnostics);
 }
 

@@ -20,8 +20,9 @@ ProgramFile read_program(const std::string& name, const Session& session);
 // Modules are looked for beside the program, then on the session's search path.
 LowerHost module_host(const std::string& program_path, const Session& session);
 
-// What a program says about itself without any image at hand: names that look like channels of images count as
-// brought. Errors and warnings go to `diagnostics`.
-Lowered survey(ProgramFile& program, const LowerHost& host, Diagnostics& diagnostics);
+// What a program says about itself. `images` are the names that images at hand bring; where there are none, names that
+// look like channels of images count as brought. Errors and warnings go to `diagnostics`.
+Lowered survey(ProgramFile& program, const LowerHost& host, Diagnostics& diagnostics,
+               const std::vector<StreamName>& images = {});
 
 }  // namespace pse::app

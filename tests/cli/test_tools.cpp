@@ -26,6 +26,18 @@ TEST_F(Tools, CheckReportsAllErrorsOfAllFiles) {
   EXPECT_EQ(pse({"check", "-"}, "color = white\n").status, 0);
 }
 
+TEST_F(Tools, CheckKnowsTheChannelsOfImages) {
+  file("make.pse", "color = white\nheat = x\n");
+  ASSERT_EQ(pse({"render", "make.pse", "-o", "heat.exr", "--res", "2x2"}).status, 0);
+  file("fire.pse", "color = white * heat\n");
+  file("named.pse", "color = white * a.heat\n");
+  EXPECT_EQ(pse({"check", "fire.pse"}).status, 3);
+  EXPECT_EQ(pse({"check", "fire.pse", "heat.exr"}).status, 0);
+  EXPECT_EQ(pse({"check", "named.pse", "a=heat.exr"}).status, 0);
+  EXPECT_EQ(pse({"check", "named.pse", "b=heat.exr"}).status, 3);
+  EXPECT_EQ(pse({"check", "fire.pse", "missing.exr"}).status, 4);
+}
+
 TEST_F(Tools, WarningsCanBeErrorsOrHidden) {
   file("a.pse", "Level = 1 [[ colour = 3 ]]\ncolor = white * Level\n");
   EXPECT_EQ(pse({"check", "a.pse"}).status, 0);

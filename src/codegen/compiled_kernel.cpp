@@ -13,7 +13,6 @@ void report(const KernelCall& call, RunStatus& status, std::int64_t first) {
   if (status.failed_check.compare_exchange_strong(none, call.failed_check)) {
     status.failed_sample = static_cast<std::uint32_t>(first + call.failed_sample);
   }
-  status.cancel = true;
 }
 
 float* aligned(float* memory) {

@@ -133,6 +133,7 @@ int run(int rounds) {
       if (!host_target() || &target > host_target()) continue;
       add(target.width, target);
       if (target.vbmi) add(32, target);
+      if (target.avx2 && !target.avx512) add(16, target);
     }
   }
   std::vector<double> limit;

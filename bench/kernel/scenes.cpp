@@ -47,7 +47,7 @@ IrFloat octaves(Writer& w, int count, const F& f) {
   b.begin_region(body);
   const ir::Value n = b.add_param(body, ir::Type::i32);
   const IrFloat frequency(b, b.add_param(body, ir::Type::f32)), sum(b, b.add_param(body, ir::Type::f32));
-  const IrFloat value = improved_noise<IrFloat, 3>({w.point[0] * frequency, w.point[1] * frequency, w.point[2] * frequency});
+  const IrFloat value = num::improved_noise<IrFloat, 3>({w.point[0] * frequency, w.point[1] * frequency, w.point[2] * frequency});
   const IrFloat next = sum + f(value) / frequency;
   body.yields = {b.emit(ir::Op::iadd, {n, b.const_i32(1)}), (frequency * IrFloat(2.0f)).value, next.value};
   b.end_region();
@@ -61,7 +61,7 @@ IrFloat octaves_unrolled(Writer& w, int count, const F& f) {
   float frequency = 1;
   for (int k = 0; k < count; ++k, frequency *= 2) {
     const IrFloat scale(frequency);
-    const IrFloat value = f(improved_noise<IrFloat, 3>({w.point[0] * scale, w.point[1] * scale, w.point[2] * scale})) * IrFloat(1 / frequency);
+    const IrFloat value = f(num::improved_noise<IrFloat, 3>({w.point[0] * scale, w.point[1] * scale, w.point[2] * scale})) * IrFloat(1 / frequency);
     sum = k == 0 ? value : sum + value;
   }
   return sum;
@@ -84,7 +84,7 @@ const auto absolute = [](auto v) {
 
 Scene noise() {
   Writer w("noise 3-D", 1);
-  w.output(improved_noise<IrFloat, 3>(w.point));
+  w.output(num::improved_noise<IrFloat, 3>(w.point));
   w.scene.expected = [](float x, float y, float z) { return num::improved_noise<float, 3>({x, y, z}); };
   return std::move(w.scene);
 }

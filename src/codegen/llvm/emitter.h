@@ -86,6 +86,7 @@ class FunctionEmitter {
   // table_emitter.cpp
   llvm::Value* table_lookup(llvm::ArrayRef<llvm::Constant*> entries, llvm::Value* index);
   llvm::Value* table_in_registers(llvm::ArrayRef<llvm::Constant*> entries, llvm::Value* index);
+  llvm::Value* table_in_bytes(llvm::ArrayRef<llvm::Constant*> entries, llvm::Value* index);
   llvm::Value* permute_512(llvm::Constant* table, llvm::Value* index);
   llvm::Value* permute_256(llvm::Constant* table, llvm::Value* index);
   llvm::Value* bytes_add(llvm::Value* a, llvm::Value* b);

@@ -2,6 +2,8 @@
 // varying index, shuffles for bytes where it can only shuffle 16, gathers for what is left.
 #include "codegen/llvm/emitter.h"
 
+#include <bit>
+
 #include <llvm/IR/IntrinsicsX86.h>
 
 namespace pse {
@@ -28,6 +30,9 @@ llvm::Value* FunctionEmitter::table_lookup(llvm::ArrayRef<llvm::Constant*> entri
   }
   const unsigned lanes = lanes_of(index);
   if (lanes > 1 && parent_.target().avx512 && entries.size() <= 32) return table_in_registers(entries, index);
+  if (lanes > 1 && !parent_.target().avx512 && entries.size() <= 16) {
+    if (llvm::Value* result = table_in_bytes(entries, index)) return result;
+  }
   if (lanes > 1 && parent_.target().avx2 && entries.size() <= 16) return table_in_registers(entries, index);
 
   llvm::Constant* contents = llvm::ConstantArray::get(llvm::ArrayType::get(element, entries.size()), entries);
@@ -62,6 +67,47 @@ llvm::Value* FunctionEmitter::table_in_registers(llvm::ArrayRef<llvm::Constant*>
     });
   }
   return b_.CreateBitCast(result, lanes_type(entries[0]->getType(), lanes_of(index)));
+}
+
+// A table of halves, ones and zeros, such as gradients are: half of each entry has only its top byte set, so one shuffle
+// looks up bytes. Where several lookups take their indices from the bytes of one word, they share that shuffle.
+llvm::Value* FunctionEmitter::table_in_bytes(llvm::ArrayRef<llvm::Constant*> entries, llvm::Value* index) {
+  if (!entries[0]->getType()->isFloatTy()) return nullptr;
+  llvm::SmallVector<std::uint8_t, 32> halves;
+  for (unsigned i = 0; i < 32; ++i) {
+    const float entry = llvm::cast<llvm::ConstantFP>(entries[i % entries.size()])->getValueAPF().convertToFloat();
+    const float half = 0.5f * entry;
+    const auto half_bits = std::bit_cast<std::uint32_t>(half);
+    if (std::bit_cast<std::uint32_t>(half + half) != std::bit_cast<std::uint32_t>(entry) || half_bits << 8 != 0) return nullptr;
+    halves.push_back(static_cast<std::uint8_t>(half_bits >> 24));
+  }
+  // Which byte of which word the index is.
+  llvm::Value* word = index;
+  std::uint64_t byte = 0;
+  if (auto* shift = llvm::dyn_cast<llvm::BinaryOperator>(index); shift && shift->getOpcode() == llvm::Instruction::LShr) {
+    const auto* by = llvm::dyn_cast<llvm::Constant>(shift->getOperand(1));
+    const auto* number = by ? llvm::dyn_cast_or_null<llvm::ConstantInt>(by->getSplatValue()) : nullptr;
+    if (number && number->getZExtValue() % 8 == 0 && number->getZExtValue() < 32) {
+      word = shift->getOperand(0);
+      byte = number->getZExtValue() / 8;
+    }
+  }
+
+  llvm::Type* words = index->getType();
+  const auto constant = [&](std::uint32_t value) { return llvm::ConstantInt::get(words, value); };
+  llvm::Value* low_bits = b_.CreateAnd(word, constant(0x0f0f0f0fu));
+  llvm::Type* all_bytes = lanes_type(b_.getInt8Ty(), 4 * lanes_of(index));
+  const unsigned piece = parent_.target().avx2 && lanes_of(index) >= 8 ? 32 : 16;
+  const auto shuffle_id = piece == 32 ? llvm::Intrinsic::x86_avx2_pshuf_b : llvm::Intrinsic::x86_ssse3_pshuf_b_128;
+  llvm::Constant* row = byte_vector(context_, llvm::ArrayRef(halves).take_front(piece));
+  llvm::Value* found = by_pieces(b_, b_.CreateBitCast(low_bits, all_bytes), piece, [&](llvm::Value* v) {
+    return b_.CreateIntrinsic(shuffle_id, {}, {row, v});
+  });
+  llvm::Value* top = b_.CreateBitCast(found, words);
+  if (byte < 3) top = b_.CreateShl(top, constant(static_cast<std::uint32_t>(24 - 8 * byte)));
+  if (byte > 0) top = b_.CreateAnd(top, constant(0xff000000u));
+  llvm::Value* half = b_.CreateBitCast(top, lanes_type(f32_, lanes_of(index)));
+  return b_.CreateFAdd(half, half);
 }
 
 llvm::Value* FunctionEmitter::permute_512(llvm::Constant* table, llvm::Value* index) {

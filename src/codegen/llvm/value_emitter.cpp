@@ -66,6 +66,13 @@ llvm::Value* FunctionEmitter::float_to_int(llvm::Value* value) {
 llvm::Value* FunctionEmitter::shift(Op op, llvm::Value* value, llvm::Value* by) {
   llvm::Type* t = value->getType();
   llvm::Value* limit = llvm::ConstantInt::get(t, 31);
+  // By a number known to be small: the plain instruction.
+  if (const auto* constant = llvm::dyn_cast<llvm::Constant>(by)) {
+    const auto* number = llvm::dyn_cast_or_null<llvm::ConstantInt>(t->isVectorTy() ? constant->getSplatValue() : constant);
+    if (number && number->getZExtValue() <= 31) {
+      return op == Op::ishl ? b_.CreateShl(value, by) : op == Op::ishr ? b_.CreateLShr(value, by) : b_.CreateAShr(value, by);
+    }
+  }
   llvm::Value* inside = b_.CreateICmpULE(by, limit);
   if (op == Op::isar) return b_.CreateAShr(value, b_.CreateSelect(inside, by, limit));
   llvm::Value* safe = b_.CreateAnd(by, limit);

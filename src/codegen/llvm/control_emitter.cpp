@@ -121,8 +121,9 @@ void FunctionEmitter::emit_varying_if(const ir::Instruction& in) {
     }
   }
   for (std::size_t i = 0; i < in.results.size(); ++i) {
+    // Uniform only where both sides hand on the same value from outside.
     const bool wide = varying(in.results[i]);
-    values_[in.results[i]] = wide ? b_.CreateSelect(condition, yields[0][i], yields[1][i]) : yields[0][i];
+    values_[in.results[i]] = wide ? b_.CreateSelect(condition, yields[0][i], yields[1][i]) : get(in.regions[0].yields[i]);
   }
 }
 
@@ -216,25 +217,25 @@ void FunctionEmitter::emit_varying_loop(const ir::Instruction& in) {
   mask_ = still;
   emit_region(body);
   mask_ = outer;
-  std::vector<llvm::Value*> next;
+  std::vector<llvm::Value*> next, twins_next;
   for (std::size_t i = 0; i < count; ++i) {
     llvm::Value* value = get_as(body.yields[i], varying(head.params[i]));
     if (varying(head.params[i])) value = b_.CreateSelect(still, value, params[i]);
     next.push_back(to_stored(value));
-    if (twins[i]) left_with[i] = to_stored(left_with[i]);
+    twins_next.push_back(twins[i] ? to_stored(left_with[i]) : nullptr);
   }
   poll();
   llvm::BasicBlock* end = b_.GetInsertBlock();
   active_phi->addIncoming(still_stored, end);
   for (std::size_t i = 0; i < count; ++i) {
     phis[i]->addIncoming(next[i], end);
-    if (twins[i]) twins[i]->addIncoming(left_with[i], end);
+    if (twins[i]) twins[i]->addIncoming(twins_next[i], end);
   }
   b_.CreateBr(turn);
 
   b_.SetInsertPoint(after);
   for (std::size_t i = 0; i < count; ++i) {
-    values_[in.results[i]] = twins[i] ? from_stored(left_with[i], type(head.params[i])) : params[i];
+    values_[in.results[i]] = twins[i] ? left_with[i] : params[i];
   }
 }
 

@@ -27,10 +27,9 @@ void run(const BackendRequest& request, BackendReply& reply) {
   ModuleEmitter emitter(module, request);
   emitter.emit_samples();
   emitter.emit_frame();
-#ifndef NDEBUG
+  // Cheap, and LLVM crashes on what it should not be given.
   llvm::raw_string_ostream complaints(reply.error);
   if (llvm::verifyModule(module, &complaints)) return;
-#endif
   if (request.optimize) optimise(module, *machine);
   if (request.product == BackendProduct::llvm) {
     reply.bytes = text_of(module);

@@ -19,6 +19,7 @@ void add_flags(std::set<std::string>& assigned, const Exits& exits) {
 }  // namespace
 
 void Lowering::lower_while(const WhileStmt& statement, const Span& span) {
+  if (!statement.condition) return;  // the parser has reported it
   std::set<std::string> assigned;
   collect_assigned(statement.body, assigned);
   Exits exits = exits_of(statement.body);
@@ -101,6 +102,7 @@ void Lowering::counted_loop(const ForStmt& statement, ir::Value count,
 }
 
 void Lowering::lower_for(const ForStmt& statement, const Span& span) {
+  if (!statement.sequence) return;  // the parser has reported it
   // A range: count its steps before the loop, so that it ends whatever the body does.
   if (const auto* range = std::get_if<RangeExpr>(&statement.sequence->node)) {
     const auto bound = [&](const ExprPtr& expr) -> Typed {

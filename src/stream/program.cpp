@@ -21,6 +21,20 @@ class Clock {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+// After errors of the parser: what else is wrong with the statements that it understood. Names that nothing is like are
+// left out, since a statement that was not understood may have set them.
+void add_later_errors(SourceMap& sources, const lang::Program& tree, const LowerHost& host, const LowerOptions& options,
+                      Diagnostics& diagnostics) {
+  Diagnostics later;
+  lower_program(sources, tree, host, options, later);
+  for (const Diagnostic& diagnostic : later.all()) {
+    const bool unknown = diagnostic.code == "unknown-name" || diagnostic.code == "unknown-function";
+    if (diagnostic.severity == Severity::error && (!unknown || diagnostic.suggestion.starts_with("did you mean")))
+      diagnostics.add(diagnostic);
+  }
+  diagnostics.sort();
+}
+
 }  // namespace
 
 std::shared_ptr<const Program> compile(SourceMap& sources, FileId file, const LowerHost& host,
@@ -31,7 +45,10 @@ std::shared_ptr<const Program> compile(SourceMap& sources, FileId file, const Lo
   // Text to tree.
   const lang::Program tree = lang::parse(sources, file, diagnostics);
   program->times.parse = clock.lap();
-  if (diagnostics.has_errors()) return nullptr;
+  if (diagnostics.has_errors()) {
+    add_later_errors(sources, tree, host, options.lower, diagnostics);
+    return nullptr;
+  }
 
   // Tree to IR.
   Lowered lowered = lower_program(sources, tree, host, options.lower, diagnostics);

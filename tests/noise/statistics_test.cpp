@@ -206,6 +206,20 @@ TEST(NoiseStatistics, PeriodsKeepTheFirstTile) {
   EXPECT_EQ(with(std::nanf("")), with(256.0f));
 }
 
+// The last cell of a tile ends where the first begins.
+TEST(NoiseStatistics, TilesJoin) {
+  const float h = 0x1p-10f;
+  for (const Kind<2>& kind : kinds<2>()) {
+    for (const float period : {1.0f, 3.0f, 7.0f, 100.0f}) {
+      const num::NoiseOptions<float, 2> options{std::array{period, period}, std::nullopt};
+      for (const auto& p : random_points<2>(20)) {
+        EXPECT_NEAR(kind.value({period - h, p[1]}, options), kind.value({period + h, p[1]}, options), 8 * h);
+        EXPECT_NEAR(kind.value({p[0], -h}, options), kind.value({p[0], h}, options), 8 * h);
+      }
+    }
+  }
+}
+
 template <std::size_t N>
 void derivatives_are_right() {
   for (const Kind<N>& kind : kinds<N>()) {

@@ -26,6 +26,15 @@ void share(ir::Module& module);
 // simplify_loops.cpp: loops that never turn, and what they carry without changing it.
 void simplify_loops(ir::Module& module);
 
+// unroll.cpp: short loops with a known number of turns become straight code.
+struct UnrollOptions {
+  std::size_t max_instructions = 160;  // of the straight code
+};
+void unroll(ir::Module& module, const UnrollOptions& options = {});
+
+// decide.cpp: conditions that the ranges of values decide, such as the checks of clamped indices.
+void decide(ir::Module& module);
+
 // convert_ifs.cpp: small ifs without effects become selects.
 struct ConvertOptions {
   int max_cost = 24;  // of both sides together, in additions

@@ -25,6 +25,8 @@ SplitModule run_pipeline(ir::Module module, const PipelineOptions& options) {
       run("fold", fold, module);
       run("share", share, module);
       run("simplify-loops", simplify_loops, module);
+      run("unroll", [](ir::Module& m) { unroll(m); }, module);
+      run("decide", decide, module);
       run("convert-ifs", [](ir::Module& m) { convert_ifs(m); }, module);
     }
     run("fold", fold, module);

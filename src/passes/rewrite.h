@@ -1,6 +1,8 @@
 // Small tools that passes share: renaming values, and what may be moved or computed in vain.
 #pragma once
 
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "ir/module.h"
@@ -25,6 +27,50 @@ class Renaming {
 
  private:
   std::vector<ir::Value> to_;
+};
+
+// Copies instructions with fresh values for what they define. What they use and was not defined by them or set stays.
+class Cloner {
+ public:
+  explicit Cloner(ir::Function& function) : function_(function) {}
+
+  void set(ir::Value from, ir::Value to) { fresh_[from] = to; }
+  ir::Value operator()(ir::Value value) const {
+    const auto found = fresh_.find(value);
+    return found == fresh_.end() ? value : found->second;
+  }
+
+  ir::Instruction clone(const ir::Instruction& in) {
+    ir::Instruction made{.op = in.op, .operands = used(in.operands), .imm = in.imm, .component = in.component,
+                         .span = in.span};
+    for (const ir::Region& region : in.regions) {
+      ir::Region inner{.params = defined(region.params)};
+      for (const ir::Instruction& nested : region.body) inner.body.push_back(clone(nested));
+      inner.yields = used(region.yields);
+      made.regions.push_back(std::move(inner));
+    }
+    made.results = defined(in.results);
+    return made;
+  }
+
+ private:
+  std::vector<ir::Value> used(const std::vector<ir::Value>& values) const {
+    std::vector<ir::Value> made;
+    for (const ir::Value value : values) made.push_back((*this)(value));
+    return made;
+  }
+  std::vector<ir::Value> defined(const std::vector<ir::Value>& values) {
+    std::vector<ir::Value> made;
+    for (const ir::Value value : values) {
+      function_.values.push_back(function_.values[value]);
+      made.push_back(static_cast<ir::Value>(function_.values.size() - 1));
+      fresh_[value] = made.back();
+    }
+    return made;
+  }
+
+  ir::Function& function_;
+  std::unordered_map<ir::Value, ir::Value> fresh_;
 };
 
 inline bool is_constant(ir::Op op) {

@@ -256,6 +256,91 @@ TEST(SimplifyLoops, WhatIsNotChangedIsNotCarried) {
   }
 }
 
+TEST(Unroll, LoopsOfAKnownFewTurnsBecomeStraight) {
+  const auto straight = [](const std::string& start, const std::string& limit, const std::string& compare) {
+    auto module = module_of("  %0 = input 0\n  %1 = const.i " + start + "\n  %2 = const.i " + limit + R"(
+  %3 = const.i 2
+  %4 = const.f 1
+  %10:i %11:f %12:f = loop %1 %4 %0 while (%20:i %21:f %22:f) {
+    %5 = )" + compare + R"( %20 %2
+    yield %5
+  } do (%30:i %31:f %32:f) {
+    %6 = iadd %30 %3
+    %7 = fadd %31 %31
+    %8 = fmul %32 %31
+    yield %6 %7 %8
+  }
+  yield %12
+)");
+    unroll(module);
+    EXPECT_TRUE(ir::verify(module).empty());
+    return count(module, Op::loop) == 0 ? static_cast<int>(count(module, Op::fmul)) : -1;
+  };
+  EXPECT_EQ(straight("0", "4", "ilt"), 2);   // 0 2
+  EXPECT_EQ(straight("0", "4", "ile"), 3);   // 0 2 4
+  EXPECT_EQ(straight("0", "5", "ilt"), 3);   // 0 2 4
+  EXPECT_EQ(straight("-3", "-3", "ile"), 1);
+  EXPECT_EQ(straight("7", "7", "ilt"), 0);
+  EXPECT_EQ(straight("0", "1000", "ilt"), -1);        // too long
+  EXPECT_EQ(straight("0", "2147483647", "ile"), -1);  // would wrap
+}
+
+TEST(Decide, ClampedIndicesNeedNoCheck) {
+  const auto checks_left = [](const std::string& index) {
+    auto module = module_of(R"(  %0 = input 0
+  %1 = const.f 0
+  %2 = const.f 3
+  %3 = const.i 0
+  %4 = const.i 4
+)" + index + R"(  %90 = ile %3 %80
+  %91 = ilt %80 %4
+  %92 = band %90 %91
+  check 0 %92
+  yield %0
+)");
+    decide(module);
+    fold(module);
+    return count(module, Op::check);
+  };
+  EXPECT_EQ(checks_left("%10 = fmax %0 %1\n %11 = fmin %10 %2\n %80 = f2i %11\n"), 0u);
+  EXPECT_EQ(checks_left("%10 = fmin %0 %2\n %11 = fmax %10 %1\n %80 = f2i %11\n"), 0u);
+  // NaN is the first of fmax, so it stays.
+  EXPECT_EQ(checks_left("%10 = fmax %1 %0\n %11 = fmin %2 %10\n %80 = f2i %11\n"), 1u);
+  EXPECT_EQ(checks_left("%10 = fmin %0 %2\n %80 = f2i %10\n"), 1u);
+  EXPECT_EQ(checks_left("%10 = const.f 4\n %11 = fmax %0 %1\n %12 = fmin %11 %10\n %80 = f2i %12\n"), 1u);
+  EXPECT_EQ(checks_left("%10 = f2i %0\n %11 = const.i 3\n %80 = iand %10 %11\n"), 0u);
+  EXPECT_EQ(checks_left("%10 = f2i %0\n %11 = const.i 30\n %80 = ishr %10 %11\n"), 0u);
+  EXPECT_EQ(checks_left("%10 = f2i %0\n %11 = const.i 29\n %80 = ishr %10 %11\n"), 1u);
+}
+
+TEST(Decide, CountersStayWithinTheirLimits) {
+  auto module = module_of(R"(  %0 = input 0
+  %1 = const.i 0
+  %2 = const.i 1
+  %3 = const.i 100
+  %4 = const.i 99
+  %10:i = loop %1 while (%20:i) {
+    %5 = ilt %20 %3
+    yield %5
+  } do (%30:i) {
+    %6 = ile %30 %4
+    check 0 %6
+    %7 = ile %1 %30
+    check 0 %7
+    %8 = ilt %30 %4
+    check 0 %8
+    %9 = iadd %30 %2
+    yield %9
+  }
+  %11 = ile %10 %3
+  check 0 %11
+  yield %0
+)");
+  decide(module);
+  fold(module);
+  EXPECT_EQ(count(module, Op::check), 1u);  // the one that fails in the last turn
+}
+
 TEST(ConvertIfs, SmallOnesBecomeSelectsAndOthersStay) {
   const auto ifs_left = [](const std::string& work) {
     auto module = module_of("  array 0 \"a\" 1 4 4 sample\n  %0 = input 0\n  %1 = input 1\n  %2 = flt %0 %1\n"

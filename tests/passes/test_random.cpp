@@ -73,6 +73,10 @@ TEST(RandomModules, SimplifyLoopsKeepsMeaning) { expect_same_meaning(simplify_lo
 TEST(RandomModules, ConvertIfsKeepsMeaning) {
   expect_same_meaning([](ir::Module& m) { convert_ifs(m); }, 60'000);
 }
+TEST(RandomModules, UnrollKeepsMeaning) {
+  expect_same_meaning([](ir::Module& m) { unroll(m, {.max_instructions = 400}); }, 130'000);
+}
+TEST(RandomModules, DecideKeepsMeaning) { expect_same_meaning(decide, 140'000); }
 TEST(RandomModules, HoistKeepsMeaning) { expect_same_meaning(hoist, 70'000); }
 TEST(RandomModules, HoistFrameKeepsMeaning) {
   expect_same_meaning([](ir::Module& m) {

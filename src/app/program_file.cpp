@@ -47,10 +47,14 @@ LowerHost module_host(const std::string& program_path, const Session& session) {
 Lowered survey(ProgramFile& program, const LowerHost& host, Diagnostics& diagnostics,
                const std::vector<StreamName>& images) {
   const lang::Program tree = lang::parse(program.sources, program.file, diagnostics);
-  if (diagnostics.has_errors()) return {};
   LowerOptions options;
-  options.stream = images.empty() ? image_names_read(tree) : images;
+  // A tree with gaps is only lowered, not searched for names.
+  options.stream = images.empty() && !diagnostics.has_errors() ? image_names_read(tree) : images;
   for (const StreamName& name : image_plane_names()) options.stream.push_back(name);
+  if (diagnostics.has_errors()) {
+    add_later_errors(program.sources, tree, host, options, diagnostics);
+    return {};
+  }
   return lower_program(program.sources, tree, host, options, diagnostics);
 }
 

@@ -67,4 +67,9 @@ struct Lowered {
 Lowered lower_program(SourceMap& sources, const lang::Program& program, const LowerHost& host, const LowerOptions& options,
               Diagnostics& diagnostics);
 
+// After errors of the parser: adds what else is wrong with the statements that it understood, and sorts. Names that
+// nothing is like are left out, since a statement that was not understood may have set them.
+void add_later_errors(SourceMap& sources, const lang::Program& program, const LowerHost& host,
+                      const LowerOptions& options, Diagnostics& diagnostics);
+
 }  // namespace pse

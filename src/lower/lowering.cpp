@@ -273,4 +273,16 @@ Lowered lower_program(SourceMap& sources, const lang::Program& program, const Lo
   return lower::Lowering(sources, host, options, diagnostics).run(program);
 }
 
+void add_later_errors(SourceMap& sources, const lang::Program& program, const LowerHost& host,
+                      const LowerOptions& options, Diagnostics& diagnostics) {
+  Diagnostics later;
+  lower_program(sources, program, host, options, later);
+  for (const Diagnostic& diagnostic : later.all()) {
+    const bool unknown = diagnostic.code == "unknown-name" || diagnostic.code == "unknown-function";
+    if (diagnostic.severity == Severity::error && (!unknown || diagnostic.suggestion.starts_with("did you mean")))
+      diagnostics.add(diagnostic);
+  }
+  diagnostics.sort();
+}
+
 }  // namespace pse

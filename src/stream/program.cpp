@@ -21,20 +21,6 @@ class Clock {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-// After errors of the parser: what else is wrong with the statements that it understood. Names that nothing is like are
-// left out, since a statement that was not understood may have set them.
-void add_later_errors(SourceMap& sources, const lang::Program& tree, const LowerHost& host, const LowerOptions& options,
-                      Diagnostics& diagnostics) {
-  Diagnostics later;
-  lower_program(sources, tree, host, options, later);
-  for (const Diagnostic& diagnostic : later.all()) {
-    const bool unknown = diagnostic.code == "unknown-name" || diagnostic.code == "unknown-function";
-    if (diagnostic.severity == Severity::error && (!unknown || diagnostic.suggestion.starts_with("did you mean")))
-      diagnostics.add(diagnostic);
-  }
-  diagnostics.sort();
-}
-
 }  // namespace
 
 std::shared_ptr<const Program> compile(SourceMap& sources, FileId file, const LowerHost& host,

@@ -329,8 +329,10 @@ class Scanner {
     }
 
     // Foreign spellings first: they contain the known ones. `=>` is not met in `a=>b` by accident.
+    const bool may_be_foreign =
+        static_cast<unsigned char>(peek()) >= 0x80 || std::string_view(".=!<:&|%").contains(peek());
     for (const Lookalike& lookalike : lookalikes) {
-      if (!starts(lookalike.text)) continue;
+      if (!may_be_foreign || !starts(lookalike.text)) continue;
       if ((lookalike.text == "&" && starts("&&")) || (lookalike.text == "|" && starts("||")))
         continue;
       const std::size_t begin = at_;

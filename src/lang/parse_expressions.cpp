@@ -154,6 +154,10 @@ ExprPtr Parser::postfix() {
       value = call(std::move(value));
     } else if (at(left_bracket) && !apart && !at_metadata()) {
       value = index(std::move(value));
+    } else if (at(dot) && std::holds_alternative<NumberExpr>(value->node) &&
+               !value->parenthesised) {
+      unexpected("an operator", "a number has no components");
+      return nullptr;
     } else if (at(dot)) {
       value = member(std::move(value));
     } else {

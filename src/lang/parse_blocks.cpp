@@ -88,11 +88,11 @@ Block Parser::body(const Layout& outer, std::string_view head, bool understood) 
         .inside_braces = outer.braces, .column = peek().indent, .head_column = line_column_};
     take();
     const std::uint32_t begin = peek().begin;
-    const std::size_t errors = diagnostics_.error_count();
+    failed_ = false;
     statements(block, inner);
     block.span = since(begin);
     // Lines with nothing but `;`.
-    if (block.empty() && diagnostics_.error_count() == errors)
+    if (block.empty() && !failed_)
       report("missing-block", span(peek()), "`" + std::string(head) + "` has an empty block",
              "a statement", "write `{ }` for a block that does nothing");
   } else if (at_statement_end() && !understood) {

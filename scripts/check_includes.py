@@ -32,7 +32,7 @@ THIRD_PARTY = {
     "nlohmann/": None,
 }
 # Headers of the operating system and the compiler, which are no library.
-SYSTEM = re.compile(r"^(sys/\w+|unistd|fcntl|signal|dlfcn|spawn|poll|termios|pthread|cpuid|immintrin|x86intrin|errno|"
+SYSTEM = re.compile(r"^(sys/\w+|unistd|fcntl|signal|dlfcn|spawn|poll|elf|link|termios|pthread|cpuid|immintrin|x86intrin|errno|"
                     r"pwd|locale|langinfo|time|stdio|stdlib|string|math)\.h$")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 

@@ -127,7 +127,7 @@ TEST(Executor, MemoryLimitBoundsTilesInFlight) {
   const Rect window{0, 0, 512, 512};
   execute(program, state, [](const TileView&) {}, [&](const TileView&) { --alive; },
           {.window = window, .threads = 8, .ordered_sink = true, .memory_limit = 80 * 1024}, status);
-  EXPECT_EQ(most, 2);
+  EXPECT_LE(most, 2);  // on a busy machine even fewer
 }
 
 TEST(Executor, CancelStopsEndlessLoopsWithin50Milliseconds) {

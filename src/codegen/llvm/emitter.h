@@ -89,6 +89,7 @@ class FunctionEmitter {
   llvm::Value* table_in_bytes(llvm::ArrayRef<llvm::Constant*> entries, llvm::Value* index);
   llvm::Value* permute_512(llvm::Constant* table, llvm::Value* index);
   llvm::Value* permute_256(llvm::Constant* table, llvm::Value* index);
+  llvm::Value* multiply(llvm::Value* a, llvm::Value* b);
   llvm::Value* bytes_add(llvm::Value* a, llvm::Value* b);
   llvm::Value* bytes_lookup(const ir::ByteTable& table, llvm::Value* index);
   llvm::Value* bytes_lookup_vbmi(const ir::ByteTable& table, llvm::Value* bytes);

@@ -2,6 +2,7 @@
 #include "codegen/llvm/emitter.h"
 
 #include <llvm/IR/IntrinsicsX86.h>
+#include <llvm/IR/PatternMatch.h>
 
 namespace pse {
 
@@ -40,6 +41,20 @@ llvm::Value* FunctionEmitter::emit_input(const ir::Instruction& in) {
   if (ir_.inputs[index].rate != ir::Rate::sample) return inputs_[index];
   llvm::Value* address = b_.CreateInBoundsGEP(f32_, inputs_[index], base_);
   return b_.CreateAlignedLoad(parent_.type_of(ir::Type::f32, lanes_), address, llvm::Align(4));
+}
+
+// A byte times 0x01010101 is that byte in all four places: a shuffle, cheaper than the product.
+llvm::Value* FunctionEmitter::multiply(llvm::Value* x, llvm::Value* y) {
+  using namespace llvm::PatternMatch;
+  llvm::Value* source = nullptr;
+  const unsigned lanes = lanes_of(x);
+  if (lanes % 4 != 0 || !match(x, m_And(m_Value(source), m_SpecificInt(255))) || !match(y, m_SpecificInt(0x01010101))) {
+    return b_.CreateMul(x, y);
+  }
+  llvm::SmallVector<int, 128> low_bytes;
+  for (unsigned i = 0; i < 4 * lanes; ++i) low_bytes.push_back(static_cast<int>(i & ~3u));
+  llvm::Value* bytes = b_.CreateBitCast(source, lanes_type(b_.getInt8Ty(), 4 * lanes));
+  return b_.CreateBitCast(b_.CreateShuffleVector(bytes, low_bytes), x->getType());
 }
 
 // cvttps2dq gives -2^31 where the value does not fit; LLVM's own fptosi would be undefined there.
@@ -126,7 +141,7 @@ llvm::Value* FunctionEmitter::emit_value(const ir::Instruction& in) {
     case Op::fle: return b_.CreateFCmpOLE(arg(0), arg(1));
     case Op::iadd: return b_.CreateAdd(arg(0), arg(1));
     case Op::isub: return b_.CreateSub(arg(0), arg(1));
-    case Op::imul: return b_.CreateMul(arg(0), arg(1));
+    case Op::imul: return multiply(arg(0), arg(1));
     case Op::iand:
     case Op::band: return b_.CreateAnd(arg(0), arg(1));
     case Op::ior:

@@ -19,6 +19,7 @@ class FileBytes : public ByteSource {
   ~FileBytes() override { ::close(file_); }
 
   std::uint64_t size() const override { return size_; }
+  bool is_file() const override { return true; }
   std::int64_t read_at(std::uint64_t offset, void* to, std::size_t count) const override {
     std::size_t done = 0;
     while (done < count) {

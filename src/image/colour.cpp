@@ -9,8 +9,7 @@ namespace {
 
 // Recommendation ITU-R BT.709, and the AP1 primaries of S-2014-004 (ACEScg) with the ACES white.
 constexpr Chromaticities rec709 = {{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {0.3127, 0.3290}};
-constexpr Chromaticities ap1 = {
-    {0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, {0.32168, 0.33767}};
+constexpr Chromaticities ap1 = {{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, {0.32168, 0.33767}};
 
 // The cone responses of the Bradford adaptation.
 constexpr Matrix3 bradford = {
@@ -18,8 +17,7 @@ constexpr Matrix3 bradford = {
 
 std::array<double, 3> operator*(const Matrix3& m, const std::array<double, 3>& v) {
   std::array<double, 3> out{};
-  for (std::size_t i = 0; i < 3; ++i)
-    out[i] = m[i][0] * v[0] + m[i][1] * v[1] + m[i][2] * v[2];
+  for (std::size_t i = 0; i < 3; ++i) out[i] = m[i][0] * v[0] + m[i][1] * v[1] + m[i][2] * v[2];
   return out;
 }
 
@@ -35,8 +33,8 @@ Matrix3 diagonal(const std::array<double, 3>& d) {
 double root(double x, int n) {
   constexpr std::uint64_t one = 0x3ff0000000000000u;
   const auto bits = std::bit_cast<std::uint64_t>(x);
-  double r = std::bit_cast<double>(one + static_cast<std::uint64_t>(
-                                             static_cast<std::int64_t>(bits - one) / n));
+  double r = std::bit_cast<double>(
+      one + static_cast<std::uint64_t>(static_cast<std::int64_t>(bits - one) / n));
   for (int i = 0; i < 5; ++i) {
     double power = r;
     for (int k = 2; k < n; ++k) power *= r;
@@ -135,11 +133,13 @@ std::optional<Tone> tone_from_name(std::string_view name) {
   if (name == "srgb" || name == "clip") return Tone::clip;
   if (name == "filmic") return Tone::filmic;
   if (name == "raw" || name == "none") return Tone::raw;
+  if (name == "ocio") return Tone::ocio;
   return std::nullopt;
 }
 
-// Above middle grey m: m + (1 - m) t / sqrt(1 + t^2) with t = (x - m) / (1 - m). The joint at m is smooth to the second
-// derivative; 1 becomes 0.76, four times middle grey 0.66, and the top is reached only by infinity.
+// Above middle grey m: m + (1 - m) t / sqrt(1 + t^2) with t = (x - m) / (1 - m). The joint at m is
+// smooth to the second derivative; 1 becomes 0.76, four times middle grey 0.66, and the top is
+// reached only by infinity.
 float filmic(float linear) {
   constexpr double grey = 0.18;
   const double x = linear;
@@ -149,7 +149,8 @@ float filmic(float linear) {
   return static_cast<float>(grey + (1 - grey) * (t / std::sqrt(1 + t * t)));
 }
 
-// A lattice of rank one whose generator is the plastic number: neighbouring pixels get thresholds far apart.
+// A lattice of rank one whose generator is the plastic number: neighbouring pixels get thresholds
+// far apart.
 float dither(int x, int y) {
   const std::uint32_t mixed =
       static_cast<std::uint32_t>(x) * 0xc13fa9a9u + static_cast<std::uint32_t>(y) * 0x91e10da5u;

@@ -1,6 +1,7 @@
-// Colour arithmetic: working spaces and the matrices between them, the sRGB curve, tone curves for display, dithering.
-// Programs work in scene-linear light; only what is shown or stored for showing (PNG, JPEG, MP4) goes through a display
-// transform. Everything is computed with + - * / and square roots alone, so the same bytes come out on every machine.
+// Colour arithmetic: working spaces and the matrices between them, the sRGB curve, tone curves for
+// display, dithering. Programs work in scene-linear light; only what is shown or stored for showing
+// (PNG, JPEG, MP4) goes through a display transform. Everything is computed with + - * / and square
+// roots alone, so the same bytes come out on every machine.
 #pragma once
 
 #include <array>
@@ -37,12 +38,14 @@ float srgb_decode(float encoded);
 enum class Tone {
   clip,    // "srgb": as it is; what is brighter than the display is cut off
   filmic,  // as it is up to middle grey (0.18); from there a shoulder that approaches 1
-  raw      // no transform and no curve: the numbers themselves
+  raw,     // no transform and no curve: the numbers themselves
+  ocio     // a view of the OpenColorIO configuration
 };
-std::optional<Tone> tone_from_name(std::string_view name);  // "srgb", "filmic", "raw"
+std::optional<Tone> tone_from_name(std::string_view name);  // "srgb", "filmic", "raw", "ocio"
 float filmic(float linear);
 
-// What dithering adds before a value is cut to whole steps: between 0 and 1, evenly spread, high in frequency.
+// What dithering adds before a value is cut to whole steps: between 0 and 1, evenly spread, high in
+// frequency.
 float dither(int x, int y);
 
 }  // namespace pse::image

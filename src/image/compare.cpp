@@ -42,7 +42,8 @@ class Band {
 
   Result<void> read(int y, int count) {
     const Window& data = reader_.spec().data;
-    const auto wide = static_cast<std::size_t>(common_.width()), narrow = static_cast<std::size_t>(data.width());
+    const auto wide = static_cast<std::size_t>(common_.width()),
+               narrow = static_cast<std::size_t>(data.width());
     const int first = std::max(y, data.y0), last = std::min(y + count, data.y1);
     std::vector<float*> planes;
     for (std::size_t c = 0; c < channels_.size(); ++c) {
@@ -72,14 +73,14 @@ class Band {
 
 std::vector<std::pair<std::string, std::string>> describe(const ImageSpec& spec) {
   std::vector<std::pair<std::string, std::string>> lines;
-  lines.emplace_back("format", spec.format + (spec.storage.empty() ? "" : " (" + spec.storage + ")"));
+  lines.emplace_back("format",
+                     spec.format + (spec.storage.empty() ? "" : " (" + spec.storage + ")"));
   lines.emplace_back("frame", describe(spec.display));
   if (spec.data != spec.display) lines.emplace_back("data window", describe(spec.data));
   for (const auto& layer : layers_of(spec)) {
-    std::string what = layer.components() == 1
-                           ? "number: "
-                           : (layer.colour ? "colour of " : "vector of ") +
-                                 std::to_string(layer.components()) + ": ";
+    std::string what = layer.components() == 1 ? "number: "
+                                               : (layer.colour ? "colour of " : "vector of ") +
+                                                     std::to_string(layer.components()) + ": ";
     for (std::size_t i = 0; i < layer.channels.size(); ++i) {
       const auto& channel = spec.channels[static_cast<std::size_t>(layer.channels[i])];
       what += (i == 0 ? "" : " ") + channel.name;
@@ -152,7 +153,8 @@ Result<Comparison> compare(ImageReader& a, ImageReader& b, double tolerance) {
     }
   }
   for (std::size_t c = 0; c < finite.size(); ++c)
-    if (finite[c] > 0) result.channels[c].rms = std::sqrt(result.channels[c].rms / double(finite[c]));
+    if (finite[c] > 0)
+      result.channels[c].rms = std::sqrt(result.channels[c].rms / double(finite[c]));
   return result;
 }
 

@@ -2,6 +2,7 @@
 #include "image/display.h"
 
 #include <algorithm>
+#include <array>
 
 namespace pse::image {
 
@@ -39,11 +40,21 @@ Result<DisplayChannels> pick_display_channels(const ImageSpec& spec, const std::
   return chosen;
 }
 
-DisplayTransform::DisplayTransform(DisplayChannels channels, ColourSpace working, Tone tone)
-    : channels_(std::move(channels)), tone_(channels_.colour ? tone : Tone::raw) {
-  adapt_ = tone_ != Tone::raw && working != ColourSpace::lin_rec709 && channels_.values.size() == 3;
-  if (adapt_)
-    to_display_ = colour_matrix(chromaticities_of(working), chromaticities_of(ColourSpace::lin_rec709));
+Result<DisplayTransform> DisplayTransform::create(DisplayChannels channels, ColourSpace working,
+                                                  Tone tone, const std::string& ocio_view) {
+  DisplayTransform made;
+  made.channels_ = std::move(channels);
+  made.tone_ = made.channels_.colour ? tone : Tone::raw;
+  if (made.tone_ == Tone::ocio) {
+    auto view = open_ocio_view(working, ocio_view);
+    if (!view) return std::unexpected(view.error());
+    made.view_ = std::move(*view);
+    return made;
+  }
+  const auto &from = chromaticities_of(working), &to = chromaticities_of(ColourSpace::lin_rec709);
+  made.adapt_ = made.tone_ != Tone::raw && from != to && made.channels_.values.size() == 3;
+  if (made.adapt_) made.to_display_ = colour_matrix(from, to);
+  return made;
 }
 
 void DisplayTransform::row(std::span<const float* const> planes, int width, bool keep_premultiplied,
@@ -55,7 +66,8 @@ void DisplayTransform::row(std::span<const float* const> planes, int width, bool
   for (int x = 0; x < width; ++x) {
     float* pixel = to + static_cast<std::size_t>(x) * step;
     for (std::size_t i = 0; i < n; ++i)
-      pixel[i] = channels_.values[i] < 0 ? 0.0f : planes[static_cast<std::size_t>(channels_.values[i])][x];
+      pixel[i] =
+          channels_.values[i] < 0 ? 0.0f : planes[static_cast<std::size_t>(channels_.values[i])][x];
     if (alpha != nullptr) {
       const float a = alpha[x];
       if (channels_.colour && !keep_premultiplied && a > 0 && a < 1)
@@ -63,6 +75,13 @@ void DisplayTransform::row(std::span<const float* const> planes, int width, bool
       pixel[n] = a;
     }
     if (tone_ == Tone::raw) continue;
+    if (view_) {
+      std::array<float, 3> seen = {pixel[0], n == 3 ? pixel[1] : pixel[0],
+                                   n == 3 ? pixel[2] : pixel[0]};
+      view_->apply(seen.data(), 1);
+      std::copy_n(seen.data(), n, pixel);
+      continue;
+    }
     if (adapt_) apply(to_display_, pixel, pixel + 1, pixel + 2, 1);
     for (std::size_t i = 0; i < n; ++i) {
       const float light = tone_ == Tone::filmic ? filmic(pixel[i]) : pixel[i];

@@ -1,5 +1,6 @@
-// From a program's channels to what a display format stores: which channels, unpremultiplied, through the tone curve and
-// the sRGB curve, cut to whole steps. Used by PNG, by the formats behind OpenImageIO and by MP4.
+// From a program's channels to what a display format stores: which channels, unpremultiplied,
+// through the tone curve and the sRGB curve, cut to whole steps. Used by PNG, by the formats behind
+// OpenImageIO and by MP4.
 #pragma once
 
 #include <span>
@@ -9,6 +10,7 @@
 #include "image/colour.h"
 #include "image/error.h"
 #include "image/image.h"
+#include "image/ocio.h"
 
 namespace pse::image {
 
@@ -16,7 +18,7 @@ namespace pse::image {
 struct DisplayChannels {
   std::vector<int> values;  // one or three
   int alpha = -1;
-  bool colour = true;       // false: data, which is stored as it is
+  bool colour = true;  // false: data, which is stored as it is
   int count() const { return static_cast<int>(values.size()) + (alpha >= 0 ? 1 : 0); }
 };
 
@@ -25,18 +27,24 @@ Result<DisplayChannels> pick_display_channels(const ImageSpec& spec, const std::
 
 class DisplayTransform {
  public:
-  DisplayTransform(DisplayChannels channels, ColourSpace working, Tone tone);
+  // `ocio_view` matters to Tone::ocio only. Fails when there is no such view.
+  static Result<DisplayTransform> create(DisplayChannels channels, ColourSpace working, Tone tone,
+                                         const std::string& ocio_view);
 
   const DisplayChannels& channels() const { return channels_; }
-  // One row of `width` pixels, interleaved, in display range; values outside [0, 1] are not yet cut.
-  // `keep_premultiplied` leaves colour as light over black, for formats without alpha.
-  void row(std::span<const float* const> planes, int width, bool keep_premultiplied, float* to) const;
+  // One row of `width` pixels, interleaved, in display range; values outside [0, 1] are not yet
+  // cut. `keep_premultiplied` leaves colour as light over black, for formats without alpha.
+  void row(std::span<const float* const> planes, int width, bool keep_premultiplied,
+           float* to) const;
 
  private:
+  DisplayTransform() = default;
+
   DisplayChannels channels_;
-  Tone tone_;
+  Tone tone_ = Tone::clip;
   bool adapt_ = false;
   Matrix3 to_display_{};
+  std::shared_ptr<const OcioView> view_;
 };
 
 // A display value as a whole number of steps. NaN becomes 0.

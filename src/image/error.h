@@ -1,4 +1,5 @@
-// What can go wrong with an image file, as a value. Every function of image/ that touches a file returns a Result.
+// What can go wrong with an image file, as a value. Every function of image/ that touches a file
+// returns a Result.
 #pragma once
 
 #include <expected>
@@ -19,14 +20,15 @@ enum class ErrorKind {
   // while writing
   cannot_write,
   disk_full,
-  not_finite,    // NaN or infinity where the policy is to refuse them
+  not_finite,  // NaN or infinity where the policy is to refuse them
 };
 
 struct ImageError {
   ErrorKind kind = ErrorKind::damaged;
   std::string message;  // one sentence that names the file, and what to do where that is known
 
-  // Whether the fault lies with what was to be written (exit status 5) and not with what was read (4).
+  // Whether the fault lies with what was to be written (exit status 5) and not with what was read
+  // (4).
   bool is_output() const { return kind >= ErrorKind::cannot_write; }
 };
 

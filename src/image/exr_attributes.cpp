@@ -24,11 +24,23 @@ namespace pse::image::exr {
 namespace {
 
 // Attributes that the spec holds in a field of its own, or that only say how the file is laid out.
-const std::set<std::string> structural = {
-    "channels",    "compression", "dataWindow",         "displayWindow",     "lineOrder",
-    "tiles",       "chunkCount",  "pixelAspectRatio",   "chromaticities",    "type",
-    "preview",     "name",        "screenWindowCenter", "screenWindowWidth", "framesPerSecond",
-    "maxSamplesPerPixel", "version"};
+const std::set<std::string> structural = {"channels",
+                                          "compression",
+                                          "dataWindow",
+                                          "displayWindow",
+                                          "lineOrder",
+                                          "tiles",
+                                          "chunkCount",
+                                          "pixelAspectRatio",
+                                          "chromaticities",
+                                          "type",
+                                          "preview",
+                                          "name",
+                                          "screenWindowCenter",
+                                          "screenWindowWidth",
+                                          "framesPerSecond",
+                                          "maxSamplesPerPixel",
+                                          "version"};
 
 std::string number(double value) {
   std::array<char, 32> text{};
@@ -104,10 +116,8 @@ void read_attributes(const Imf::Header& header, ImageSpec& spec) {
   if (!(spec.pixel_aspect > 1e-6f && spec.pixel_aspect < 1e6f)) spec.pixel_aspect = 1;
   if (Imf::hasChromaticities(header)) {
     const auto& c = Imf::chromaticities(header);
-    spec.chromaticities = Chromaticities{{c.red.x, c.red.y},
-                                         {c.green.x, c.green.y},
-                                         {c.blue.x, c.blue.y},
-                                         {c.white.x, c.white.y}};
+    spec.chromaticities = Chromaticities{
+        {c.red.x, c.red.y}, {c.green.x, c.green.y}, {c.blue.x, c.blue.y}, {c.white.x, c.white.y}};
   }
   if (Imf::hasFramesPerSecond(header)) {
     const auto& rate = Imf::framesPerSecond(header);

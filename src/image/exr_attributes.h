@@ -1,4 +1,5 @@
-// Header attributes of EXR files to and from an ImageSpec. Included only by the EXR reader and writer.
+// Header attributes of EXR files to and from an ImageSpec. Included only by the EXR reader and
+// writer.
 #pragma once
 
 #include <Imath/ImathBox.h>

@@ -1,5 +1,6 @@
-// The check of an EXR header before the library sees it; see exr_header.h. Follows the file layout that the OpenEXR
-// project publishes ("OpenEXR File Layout"): magic, version, attributes (name, type, size, value), chunk table.
+// The check of an EXR header before the library sees it; see exr_header.h. Follows the file layout
+// that the OpenEXR project publishes ("OpenEXR File Layout"): magic, version, attributes (name,
+// type, size, value), chunk table.
 #include "image/exr_header.h"
 
 #include <algorithm>
@@ -16,8 +17,8 @@ constexpr int max_parts = 1024, max_attributes = 65536;
 // Rows per chunk of each compression, by its number in the file.
 constexpr std::array<int, 10> chunk_rows = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
 
-// How many times smaller than its content a chunk can be, generously: deflate reaches 1032, and the lossy methods
-// drop up to 63 of 64 numbers before it.
+// How many times smaller than its content a chunk can be, generously: deflate reaches 1032, and the
+// lossy methods drop up to 63 of 64 numbers before it.
 constexpr std::array<double, 10> densest = {1, 64, 1100, 1100, 1100, 2200, 3, 16, 100000, 100000};
 
 // What the check needs to know of one part.
@@ -60,7 +61,10 @@ struct Cursor {
     std::array<char, 256> raw{};
     if (ended) return {};
     const std::int64_t got = bytes.read_at(at, raw.data(), raw.size());
-    const char* end = got > 0 ? static_cast<const char*>(std::memchr(raw.data(), 0, static_cast<std::size_t>(got))) : nullptr;
+    const char* end =
+        got > 0
+            ? static_cast<const char*>(std::memchr(raw.data(), 0, static_cast<std::size_t>(got)))
+            : nullptr;
     if (end == nullptr) {
       ended = true;
       return {};
@@ -84,8 +88,8 @@ Result<void> look_at_channels(Cursor at, std::uint64_t size, const ReadLimits& l
       return fail(ErrorKind::damaged, file + " is damaged: a channel of an unknown type");
     part.pixel_bytes += (type == 1 ? 2.0 : 4.0) / (double(x_step) * y_step);
     if (++part.channels > limits.max_channels)
-      return fail(ErrorKind::too_large, file + " has more than " +
-                                            std::to_string(limits.max_channels) + " channels");
+      return fail(ErrorKind::too_large,
+                  file + " has more than " + std::to_string(limits.max_channels) + " channels");
   }
   return {};
 }
@@ -167,9 +171,9 @@ Result<void> judge(const PartFacts& part, const ByteSource& bytes, const ReadLim
   const std::string size = std::to_string(width) + " x " + std::to_string(height);
   if (part.x0 < -far || part.y0 < -far || part.x1 > far || part.y1 > far ||
       double(width) * double(height) > double(limits.max_pixels))
-    return fail(ErrorKind::too_large,
-                file + " claims to have " + size + " pixels, more than the limit of " +
-                    std::to_string(limits.max_pixels));
+    return fail(ErrorKind::too_large, file + " claims to have " + size +
+                                          " pixels, more than the limit of " +
+                                          std::to_string(limits.max_pixels));
 
   // What the library decodes at once: a chunk of rows, or a row of tiles.
   double rows = chunk_rows[part.compression];

@@ -1,5 +1,5 @@
-// A first look at an EXR file that trusts nothing in it: sizes are checked against the file and the limits before the
-// OpenEXR library allocates anything from them.
+// A first look at an EXR file that trusts nothing in it: sizes are checked against the file and the
+// limits before the OpenEXR library allocates anything from them.
 #pragma once
 
 #include "image/reader.h"

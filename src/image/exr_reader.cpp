@@ -1,4 +1,5 @@
-// Reading EXR; see exr_reader.h. Parts of one file become one set of channels over the window that covers all parts.
+// Reading EXR; see exr_reader.h. Parts of one file become one set of channels over the window that
+// covers all parts.
 #include "image/exr_reader.h"
 
 #include <OpenEXR/ImfBoxAttribute.h>
@@ -30,8 +31,7 @@ class Stream : public Imf::IStream {
     while (done < count) {
       if (at_ < block_at_ || at_ >= block_at_ + block_.size()) fill();
       const std::size_t skip = static_cast<std::size_t>(at_ - block_at_);
-      const std::size_t n =
-          std::min(block_.size() - skip, static_cast<std::size_t>(count - done));
+      const std::size_t n = std::min(block_.size() - skip, static_cast<std::size_t>(count - done));
       std::memcpy(to + done, block_.data() + skip, n);
       at_ += n;
       done += static_cast<int>(n);
@@ -128,11 +128,13 @@ class ExrReader : public ImageReader {
     if (type.starts_with("deep")) throw Iex::InputExc("deep data is not read");
     Part part{Imf::InputPart(file_, index), exr::window_of(header.dataWindow()), {}};
 
-    // A channel's name gets the part's in front, unless it says it already or it is the picture's own colour.
+    // A channel's name gets the part's in front, unless it says it already or it is the picture's
+    // own colour.
     const std::string prefix = file_.parts() > 1 ? prefix_of(header, view) : "";
     const auto& list = header.channels();
     bool plain = false;
-    if (!has_root_colour_ && (list.findChannel("R") != nullptr || list.findChannel("Y") != nullptr) &&
+    if (!has_root_colour_ &&
+        (list.findChannel("R") != nullptr || list.findChannel("Y") != nullptr) &&
         (!header.hasView() || header.view() == view))
       plain = has_root_colour_ = true;
     for (auto c = list.begin(); c != list.end(); ++c) {
@@ -151,7 +153,8 @@ class ExrReader : public ImageReader {
     parts_.push_back(std::move(part));
   }
 
-  // In one part with several views the first has no prefix. When another is asked for they change places.
+  // In one part with several views the first has no prefix. When another is asked for they change
+  // places.
   void move_views(const Imf::StringVector& views, const std::string& wanted) {
     if (wanted.empty() || views.empty() || views.front() == wanted) return;
     if (std::find(views.begin(), views.end(), wanted) == views.end())
@@ -178,8 +181,8 @@ class ExrReader : public ImageReader {
     Part& part = parts_[static_cast<std::size_t>(index)];
     const int width = spec_.data.width();
     const int first = std::max(y0, part.data.y0), last = std::min(y1, part.data.y1);
-    const bool covers = part.data.x0 == spec_.data.x0 && part.data.x1 == spec_.data.x1 &&
-                        first == y0 && last == y1;
+    const bool covers =
+        part.data.x0 == spec_.data.x0 && part.data.x1 == spec_.data.x1 && first == y0 && last == y1;
 
     // Point the full-size channels straight into the caller's planes.
     Imf::FrameBuffer full;
@@ -206,8 +209,8 @@ class ExrReader : public ImageReader {
                   planes[i] - std::ptrdiff_t{y0} * width - spec_.data.x0);
   }
 
-  // A sub-sampled channel: each stored value stands for x_step * y_step pixels right and below of it.
-  // `origin` is where pixel (0, 0) would be.
+  // A sub-sampled channel: each stored value stands for x_step * y_step pixels right and below of
+  // it. `origin` is where pixel (0, 0) would be.
   void read_coarse(Part& part, const Source& source, int first, int last, float* origin) {
     const int xs = source.x_step, ys = source.y_step;
     const int x_first = floor_to(part.data.x0, xs), y_first = floor_to(first, ys);
@@ -222,7 +225,8 @@ class ExrReader : public ImageReader {
     for (int y = first; y < last; ++y)
       for (int x = part.data.x0; x < part.data.x1; ++x)
         origin[std::ptrdiff_t{y} * spec_.data.width() + x] =
-            stored[static_cast<std::size_t>((y - y_first) / ys) * static_cast<std::size_t>(columns) +
+            stored[static_cast<std::size_t>((y - y_first) / ys) *
+                       static_cast<std::size_t>(columns) +
                    static_cast<std::size_t>((x - x_first) / xs)];
   }
 

@@ -5,7 +5,8 @@
 
 namespace pse::image {
 
-// Scan lines, tiles, many parts, sub-sampled channels; of mip-maps the full size. Deep data is refused.
+// Scan lines, tiles, many parts, sub-sampled channels; of mip-maps the full size. Deep data is
+// refused.
 Result<std::unique_ptr<ImageReader>> open_exr(const Bytes& bytes, const ReadOptions& options);
 
 }  // namespace pse::image

@@ -80,8 +80,8 @@ class ExrWriter : public ImageWriter {
                       static_cast<std::size_t>(spec.data.width()));
   }
 
-  // The library's files write their tables when they are destroyed, also after an error; the errors of that have no way
-  // out, and the temporary file is thrown away then in any case.
+  // The library's files write their tables when they are destroyed, also after an error; the errors
+  // of that have no way out, and the temporary file is thrown away then in any case.
   ~ExrWriter() override { shut(); }
 
  protected:
@@ -110,15 +110,14 @@ class ExrWriter : public ImageWriter {
     if (type == PixelType::float32) return Imf::FLOAT;
     return Imf::HALF;
   }
-  static std::size_t bytes_of(PixelType type) {
-    return stored_type(type) == Imf::HALF ? 2 : 4;
-  }
+  static std::size_t bytes_of(PixelType type) { return stored_type(type) == Imf::HALF ? 2 : 4; }
 
   // One row of one channel into the band, in the stored type.
   void store(std::size_t c, const float* from) {
     const auto type = stored_type(spec_.channels[c].type);
     const auto width = static_cast<std::size_t>(spec_.data.width());
-    char* to = band_[c].data() + bytes_of(spec_.channels[c].type) * width * static_cast<std::size_t>(filled_);
+    char* to = band_[c].data() +
+               bytes_of(spec_.channels[c].type) * width * static_cast<std::size_t>(filled_);
     if (type == Imf::FLOAT) {
       std::memcpy(to, from, width * sizeof(float));
     } else if (type == Imf::HALF) {
@@ -141,8 +140,8 @@ class ExrWriter : public ImageWriter {
           static_cast<std::ptrdiff_t>(bytes);
       char* origin =
           reinterpret_cast<char*>(reinterpret_cast<std::intptr_t>(band_[c].data()) - back);
-      buffer.insert(spec_.channels[c].name, Imf::Slice(stored_type(spec_.channels[c].type), origin,
-                                                       bytes, bytes * width));
+      buffer.insert(spec_.channels[c].name,
+                    Imf::Slice(stored_type(spec_.channels[c].type), origin, bytes, bytes * width));
     }
     if (tiled_) {
       tiled_->setFrameBuffer(buffer);

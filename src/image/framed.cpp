@@ -10,7 +10,8 @@ class Framed : public ImageWriter {
  public:
   Framed(std::unique_ptr<ImageWriter> frame, const ImageSpec& spec)
       : ImageWriter(spec, "the frame"), frame_(std::move(frame)) {
-    rows_.assign(spec.channels.size(), std::vector<float>(static_cast<std::size_t>(spec.display.width())));
+    rows_.assign(spec.channels.size(),
+                 std::vector<float>(static_cast<std::size_t>(spec.display.width())));
     for (const auto& row : rows_) pointers_.push_back(row.data());
   }
 
@@ -40,7 +41,8 @@ class Framed : public ImageWriter {
  private:
   // Writes rows of zeros up to the frame's row y.
   Result<void> fill_to(int y) {
-    for (const int end = std::min(y, spec_.display.y1) - spec_.display.y0; frame_->next_row() < end;)
+    for (const int end = std::min(y, spec_.display.y1) - spec_.display.y0;
+         frame_->next_row() < end;)
       if (auto done = frame_->write_rows(1, pointers_); !done) return done;
     return {};
   }
@@ -52,7 +54,8 @@ class Framed : public ImageWriter {
 
 }  // namespace
 
-std::unique_ptr<ImageWriter> put_in_frame(std::unique_ptr<ImageWriter> frame, const ImageSpec& spec) {
+std::unique_ptr<ImageWriter> put_in_frame(std::unique_ptr<ImageWriter> frame,
+                                          const ImageSpec& spec) {
   return std::make_unique<Framed>(std::move(frame), spec);
 }
 

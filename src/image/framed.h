@@ -6,6 +6,7 @@
 namespace pse::image {
 
 // `frame` writes the frame whole; the writer returned takes rows of the spec's data window.
-std::unique_ptr<ImageWriter> put_in_frame(std::unique_ptr<ImageWriter> frame, const ImageSpec& spec);
+std::unique_ptr<ImageWriter> put_in_frame(std::unique_ptr<ImageWriter> frame,
+                                          const ImageSpec& spec);
 
 }  // namespace pse::image

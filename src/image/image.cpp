@@ -44,11 +44,16 @@ float& Image::pixel(int channel, int x, int y) {
 
 std::string_view name_of(PixelType type) {
   switch (type) {
-    case PixelType::uint8: return "uint8";
-    case PixelType::uint16: return "uint16";
-    case PixelType::float16: return "half";
-    case PixelType::float32: return "float";
-    case PixelType::uint32: return "uint";
+    case PixelType::uint8:
+      return "uint8";
+    case PixelType::uint16:
+      return "uint16";
+    case PixelType::float16:
+      return "half";
+    case PixelType::float32:
+      return "float";
+    case PixelType::uint32:
+      return "uint";
   }
   return "?";
 }

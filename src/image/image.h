@@ -1,6 +1,6 @@
-// Images of named channels: what a file holds, and the same in memory. Pixel (0, 0) is top left, y grows downwards.
-// Where it stands: readers (reader.h) and writers (writer.h) speak in these types; layers.h turns channels into the
-// named values that a program reads and sets.
+// Images of named channels: what a file holds, and the same in memory. Pixel (0, 0) is top left, y
+// grows downwards. Where it stands: readers (reader.h) and writers (writer.h) speak in these types;
+// layers.h turns channels into the named values that a program reads and sets.
 #pragma once
 
 #include <array>
@@ -30,7 +30,8 @@ struct Window {
 enum class PixelType { uint8, uint16, float16, float32, uint32 };
 
 struct Channel {
-  std::string name;  // as in the file: "R", "N.X", "Z"; of a multi-part file with the part's name in front
+  std::string
+      name;  // as in the file: "R", "N.X", "Z"; of a multi-part file with the part's name in front
   PixelType type = PixelType::float32;
 };
 
@@ -55,10 +56,11 @@ struct ImageSpec {
   Alpha alpha = Alpha::premultiplied;
   std::optional<Chromaticities> chromaticities;  // nothing: Rec. 709
   float pixel_aspect = 1;
-  double frames_per_second = 0;                   // 0: not said
-  std::map<std::string, std::string> attributes;  // everything else, as text; provenance is "pse/..."
-  std::string format;                             // "exr", "png", "tiff"...
-  std::string storage;                            // for people: "zip, scanlines, 2 parts"
+  double frames_per_second = 0;  // 0: not said
+  std::map<std::string, std::string>
+      attributes;       // everything else, as text; provenance is "pse/..."
+  std::string format;   // "exr", "png", "tiff"...
+  std::string storage;  // for people: "zip, scanlines, 2 parts"
 
   // Index of the channel with this name, or -1.
   int find(std::string_view name) const;

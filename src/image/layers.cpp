@@ -9,9 +9,10 @@ namespace pse::image {
 namespace {
 
 constexpr std::array<std::string_view, 22> colours = {
-    "color",    "colour", "rgb",    "rgba",       "albedo",  "diffuse",  "specular", "emission",
-    "emissive", "beauty", "light",  "lighting",   "tint",    "ambient",  "reflection", "refraction",
-    "paint",    "sky",    "flame",  "background", "foreground", "glow"};
+    "color",    "colour",     "rgb",        "rgba",       "albedo", "diffuse",
+    "specular", "emission",   "emissive",   "beauty",     "light",  "lighting",
+    "tint",     "ambient",    "reflection", "refraction", "paint",  "sky",
+    "flame",    "background", "foreground", "glow"};
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
@@ -53,10 +54,17 @@ std::vector<int> take(Group& group, std::span<const std::string> wanted) {
 
 // The suffixes that make vectors, longest first where one contains the other.
 const std::vector<std::vector<std::string>>& vector_suffixes() {
-  static const std::vector<std::vector<std::string>> sets = {
-      {"r", "g", "b", "a"}, {"r", "g", "b"}, {"x", "y", "z", "w"}, {"x", "y", "z"}, {"u", "v", "w"},
-      {"red", "green", "blue", "alpha"}, {"red", "green", "blue"}, {"u", "v"}, {"s", "t"},
-      {"x", "y"}, {"r", "g"}};
+  static const std::vector<std::vector<std::string>> sets = {{"r", "g", "b", "a"},
+                                                             {"r", "g", "b"},
+                                                             {"x", "y", "z", "w"},
+                                                             {"x", "y", "z"},
+                                                             {"u", "v", "w"},
+                                                             {"red", "green", "blue", "alpha"},
+                                                             {"red", "green", "blue"},
+                                                             {"u", "v"},
+                                                             {"s", "t"},
+                                                             {"x", "y"},
+                                                             {"r", "g"}};
   return sets;
 }
 
@@ -112,7 +120,8 @@ void add_group(Group& group, Collector& out) {
     out.add(name, take(group, numbered), false);
     named = true;
   }
-  if (auto y = named ? std::vector<int>() : take(group, std::array<std::string, 1>{"y"}); !y.empty())
+  if (auto y = named ? std::vector<int>() : take(group, std::array<std::string, 1>{"y"});
+      !y.empty())
     out.add(name, y, false);
   for (std::size_t i = 0; i < group.channels.size(); ++i)
     if (!group.taken[i])
@@ -121,7 +130,8 @@ void add_group(Group& group, Collector& out) {
 
 // The last word of a variable's name, in lower case, without digits at its end.
 std::string last_word(std::string_view name) {
-  while (!name.empty() && (std::isdigit(static_cast<unsigned char>(name.back())) || name.back() == '_'))
+  while (!name.empty() &&
+         (std::isdigit(static_cast<unsigned char>(name.back())) || name.back() == '_'))
     name.remove_suffix(1);
   std::size_t start = name.size();
   while (start > 0 && name[start - 1] != '_') {
@@ -138,7 +148,9 @@ std::string last_word(std::string_view name) {
 std::string variable_name(std::string_view channel) {
   std::string name;
   for (const char c : channel)
-    name += std::isalnum(static_cast<unsigned char>(c)) && static_cast<unsigned char>(c) < 128 ? c : '_';
+    name += std::isalnum(static_cast<unsigned char>(c)) && static_cast<unsigned char>(c) < 128
+                ? c
+                : '_';
   if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0]))) name.insert(0, "_");
   return name;
 }
@@ -151,7 +163,8 @@ std::vector<Layer> layers_of(const ImageSpec& spec) {
     const auto dot = name.rfind('.');
     const std::string prefix = dot == std::string::npos ? "" : name.substr(0, dot);
     const std::string ending = dot == std::string::npos ? name : name.substr(dot + 1);
-    auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.name == prefix; });
+    auto group = std::find_if(groups.begin(), groups.end(),
+                              [&](const Group& g) { return g.name == prefix; });
     if (group == groups.end()) group = groups.insert(groups.end(), Group{prefix, {}, {}, {}, {}});
     group->suffixes.push_back(lower(ending));
     group->endings.push_back(ending);

@@ -1,15 +1,18 @@
 // Between channels of a file and named values of a program.
 //
-// Reading: R G B is `color`, A is `alpha`, a picture with Y alone is grey: `color` too (and `Y`). Of `layer.R .G .B (.A)`,
-// `layer.X .Y .Z (.W)`, `layer.U .V (.W)`, `layer.S .T` and `layer.c1 .c2 ...` (letters in either case) the vector `layer`
-// is made; a layer of one channel is the number `layer`; other channels are numbers `layer_channel`. Root channels that
-// are left keep their names: `Z`. Signs that a name cannot have become `_`: `forward.left.u .v` is `forward_left`.
+// Reading: R G B is `color`, A is `alpha`, a picture with Y alone is grey: `color` too (and `Y`).
+// Of `layer.R .G .B (.A)`, `layer.X .Y .Z (.W)`, `layer.U .V (.W)`, `layer.S .T` and `layer.c1 .c2
+// ...` (letters in either case) the vector `layer` is made; a layer of one channel is the number
+// `layer`; other channels are numbers `layer_channel`. Root channels that are left keep their
+// names: `Z`. Signs that a name cannot have become `_`: `forward.left.u .v` is `forward_left`.
 //
-// Writing: `color` is R G B, `alpha` is A, `Z` is Z. Other values are layers named after their variable: numbers `.Y`;
-// colours `.R .G .B`; 2 components `.U .V` when the last word of the name is uv or st, else `.X .Y`; 3 components
-// `.X .Y .Z`, 4 components `.R .G .B .A`, more `.c1 .c2 ...`. A value is a colour when the last word of its name is one of
-// colour_words(). Words end at `_`, at a capital, and digits at the end do not count: `rimLight2` ends in `light`.
-// Colours and alpha are stored as half, everything else as float.
+// Writing: `color` is R G B, `alpha` is A, `Z` is Z. Other values are layers named after their
+// variable: numbers `.Y`; colours `.R .G .B`; 2 components `.U .V` when the last word of the name
+// is uv or st, else `.X .Y`; 3 components
+// `.X .Y .Z`, 4 components `.R .G .B .A`, more `.c1 .c2 ...`. A value is a colour when the last
+// word of its name is one of colour_words(). Words end at `_`, at a capital, and digits at the end
+// do not count: `rimLight2` ends in `light`. Colours and alpha are stored as half, everything else
+// as float.
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
-// NaN and infinity; see nan_policy.h. Rows pass through a window of three, because box3 looks at the neighbours; the
-// neighbours are always those that the program computed, never repaired ones.
+// NaN and infinity; see nan_policy.h. Rows pass through a window of three, because box3 looks at
+// the neighbours; the neighbours are always those that the program computed, never repaired ones.
 #include "image/nan_policy.h"
 
 #include <algorithm>
@@ -81,13 +81,15 @@ class Repairer : public ImageWriter {
   };
 
   // All policies that look at no neighbours.
-  Result<void> put_plain(int y, int count, std::span<const float* const> planes, std::ptrdiff_t stride) {
+  Result<void> put_plain(int y, int count, std::span<const float* const> planes,
+                         std::ptrdiff_t stride) {
     const int width = spec_.data.width();
     std::vector<const float*> out(planes.begin(), planes.end());
     bool any = false;
     for (int row = 0; row < count; ++row)
       for (std::size_t c = 0; c < planes.size(); ++c)
-        any |= count_row(planes[c] + row * stride, width, depth_[c], spec_.data.x0, y + row, (*report_)[c]);
+        any |= count_row(planes[c] + row * stride, width, depth_[c], spec_.data.x0, y + row,
+                         (*report_)[c]);
     if (!any || policy_ == NanPolicy::keep) return writer_->write_rows(count, planes, stride);
     if (policy_ == NanPolicy::error) return fail(ErrorKind::not_finite, describe(*report_, spec_));
     for (std::size_t c = 0; c < planes.size(); ++c) {
@@ -105,7 +107,9 @@ class Repairer : public ImageWriter {
   // Hands on row y, mended.
   Result<void> repair(int y, bool has_below) {
     const int width = spec_.data.width(), index = y - spec_.data.y0;
-    const auto row_of = [&](int i) -> const Row& { return window_[static_cast<std::size_t>(i) % 3]; };
+    const auto row_of = [&](int i) -> const Row& {
+      return window_[static_cast<std::size_t>(i) % 3];
+    };
     const Row& here = row_of(index);
     std::vector<const float*> out(spec_.channels.size());
     for (std::size_t c = 0; c < out.size(); ++c) {

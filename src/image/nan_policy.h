@@ -1,5 +1,6 @@
-// What happens to NaN and infinity on their way into a file. They are counted in every case, so that they are never
-// silent. Plus infinity in the channel Z is no fault: it means that nothing was hit.
+// What happens to NaN and infinity on their way into a file. They are counted in every case, so
+// that they are never silent. Plus infinity in the channel Z is no fault: it means that nothing was
+// hit.
 #pragma once
 
 #include <memory>

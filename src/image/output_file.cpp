@@ -1,5 +1,5 @@
-// Files that appear whole or not at all; see output_file.h. The temporary is an unnamed file (O_TMPFILE) where the file
-// system has them, so that even a killed process leaves nothing behind.
+// Files that appear whole or not at all; see output_file.h. The temporary is an unnamed file
+// (O_TMPFILE) where the file system has them, so that even a killed process leaves nothing behind.
 #include "image/output_file.h"
 
 #include <fcntl.h>
@@ -63,7 +63,8 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool sync) {
   if (path.empty() || path.find('\0') != std::string::npos)
     return fail(ErrorKind::cannot_write, "the output's file name is empty or holds a NUL byte");
 
-  // Find out what stands at the target: nothing, a file to replace, or a device that takes the content at the end.
+  // Find out what stands at the target: nothing, a file to replace, or a device that takes the
+  // content at the end.
   if (path == "-") {
     out.device_ = ::dup(STDOUT_FILENO);
     if (out.device_ < 0) return std::unexpected(write_error(out.name_, errno));
@@ -197,6 +198,10 @@ bool OutputFile::copy_to(int target) {
   }
 }
 
+std::string OutputFile::path_for_others() const {
+  return "/proc/" + std::to_string(::getpid()) + "/fd/" + std::to_string(file_);
+}
+
 Result<void> OutputFile::commit() {
   const auto refuse = [&](int code) -> Result<void> {
     errno_ = code;
@@ -214,7 +219,8 @@ Result<void> OutputFile::commit() {
     return {};
   }
 
-  // Give the temporary a name. Where an unnamed file cannot get one, copy it to a file that has one.
+  // Give the temporary a name. Where an unnamed file cannot get one, copy it to a file that has
+  // one.
   if (temporary_.empty()) {
     const std::string name = temporary_name(target_);
     const std::string self = "/proc/self/fd/" + std::to_string(file_);

@@ -1,5 +1,6 @@
-// How libpng's errors come back: it jumps out of its call. guarded() is the only place that the jump lands, and what
-// runs inside it must own nothing, because the jump skips destructors. Included only by the PNG reader and writer.
+// How libpng's errors come back: it jumps out of its call. guarded() is the only place that the
+// jump lands, and what runs inside it must own nothing, because the jump skips destructors.
+// Included only by the PNG reader and writer.
 #pragma once
 
 #include <png.h>

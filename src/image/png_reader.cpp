@@ -44,8 +44,8 @@ class PngReader : public ImageReader {
       return fail(ErrorKind::bad_request, "rows outside " + bytes_->name());
     for (int y = y0; y < y1; ++y) {
       if (auto there = go_to(y); !there) return there;
-      const unsigned char* row = interlaced_ ? whole_.data() + row_bytes_ * static_cast<std::size_t>(y)
-                                             : row_.data();
+      const unsigned char* row =
+          interlaced_ ? whole_.data() + row_bytes_ * static_cast<std::size_t>(y) : row_.data();
       for (std::size_t i = 0; i < channels.size(); ++i)
         convert(row, channels[i], planes[i] + std::ptrdiff_t{y - y0} * spec_.data.width());
     }
@@ -74,17 +74,19 @@ class PngReader : public ImageReader {
     });
     if (!good) return std::unexpected(explain());
 
-    // Claims that the limits or the size of the file rule out: deflate makes data at most 1032 times smaller.
+    // Claims that the limits or the size of the file rule out: deflate makes data at most 1032
+    // times smaller.
     const double pixels = double(width) * double(height);
-    const double samples = (kind & PNG_COLOR_MASK_COLOR) != 0 && kind != PNG_COLOR_TYPE_PALETTE ? 3 : 1;
+    const double samples =
+        (kind & PNG_COLOR_MASK_COLOR) != 0 && kind != PNG_COLOR_TYPE_PALETTE ? 3 : 1;
     if (pixels > double(limits_.max_pixels) || double(width) * 64 > double(limits_.max_band_bytes))
-      return fail(ErrorKind::too_large, bytes_->name() + " claims to have " + std::to_string(width) +
-                                            " x " + std::to_string(height) +
+      return fail(ErrorKind::too_large, bytes_->name() + " claims to have " +
+                                            std::to_string(width) + " x " + std::to_string(height) +
                                             " pixels, more than the limit of " +
                                             std::to_string(limits_.max_pixels));
     if (pixels * samples * depth / 8 > 1100.0 * double(bytes_->size()))
-      return fail(ErrorKind::truncated, bytes_->name() + " claims to have " + std::to_string(width) +
-                                            " x " + std::to_string(height) +
+      return fail(ErrorKind::truncated, bytes_->name() + " claims to have " +
+                                            std::to_string(width) + " x " + std::to_string(height) +
                                             " pixels and is far too short for that");
 
     interlaced_ = interlace != PNG_INTERLACE_NONE;
@@ -183,7 +185,8 @@ class PngReader : public ImageReader {
   }
 
   ImageError explain() const {
-    if (cursor_.ended) return {ErrorKind::truncated, bytes_->name() + " is incomplete: it was cut short"};
+    if (cursor_.ended)
+      return {ErrorKind::truncated, bytes_->name() + " is incomplete: it was cut short"};
     return {ErrorKind::damaged, bytes_->name() + " is damaged (" + trouble_.message + ")"};
   }
 
@@ -205,6 +208,11 @@ class PngReader : public ImageReader {
 bool is_png(const ByteSource& bytes) {
   unsigned char start[8] = {};
   return bytes.read_at(0, start, 8) == 8 && png_sig_cmp(start, 0, 8) == 0;
+}
+
+bool is_almost_png(const ByteSource& bytes) {
+  char start[4] = {};
+  return bytes.read_at(0, start, 4) == 4 && std::memcmp(start + 1, "PNG", 3) == 0;
 }
 
 Result<std::unique_ptr<ImageReader>> open_png(const Bytes& bytes, const ReadOptions& options) {

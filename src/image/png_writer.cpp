@@ -26,7 +26,8 @@ class PngWriter : public ImageWriter {
         file_(std::move(file)),
         transform_(std::move(transform)),
         options_(options) {
-    png_ = png_create_write_struct(PNG_LIBPNG_VER_STRING, &trouble_, png::on_error, png::on_warning);
+    png_ =
+        png_create_write_struct(PNG_LIBPNG_VER_STRING, &trouble_, png::on_error, png::on_warning);
     if (png_ != nullptr) info_ = png_create_info_struct(png_);
     if (info_ == nullptr) throw std::bad_alloc();
   }
@@ -69,7 +70,8 @@ class PngWriter : public ImageWriter {
       if (options_.bits == 16 && std::endian::native == std::endian::little) png_set_swap(png_);
     });
     if (!good) return std::unexpected(explain());
-    const auto values = static_cast<std::size_t>(chosen.count()) * static_cast<std::size_t>(spec_.data.width());
+    const auto values =
+        static_cast<std::size_t>(chosen.count()) * static_cast<std::size_t>(spec_.data.width());
     display_.resize(values);
     stored_.resize(values * (options_.bits == 16 ? 2 : 1));
     return {};
@@ -83,21 +85,24 @@ class PngWriter : public ImageWriter {
       transform_.row(row, spec_.data.width(), false, display_.data());
       quantise(y + i);
       unsigned char* bytes = stored_.data();
-      if (!png::guarded(png_, [&] { png_write_row(png_, bytes); })) return std::unexpected(explain());
+      if (!png::guarded(png_, [&] { png_write_row(png_, bytes); }))
+        return std::unexpected(explain());
       for (auto& plane : row) plane += stride;
     }
     return {};
   }
 
   Result<void> finish() override {
-    if (!png::guarded(png_, [&] { png_write_end(png_, nullptr); })) return std::unexpected(explain());
+    if (!png::guarded(png_, [&] { png_write_end(png_, nullptr); }))
+      return std::unexpected(explain());
     return file_.commit();
   }
 
  private:
   void quantise(int y) {
     const std::size_t n = static_cast<std::size_t>(transform_.channels().count());
-    const bool spread = options_.dither && transform_.channels().colour && options_.tone != Tone::raw;
+    const bool spread =
+        options_.dither && transform_.channels().colour && options_.tone != Tone::raw;
     for (std::size_t i = 0; i < display_.size(); ++i) {
       if (options_.bits == 16) {
         const std::uint16_t steps = to_16_bits(display_[i]);
@@ -132,10 +137,12 @@ Result<std::unique_ptr<ImageWriter>> open_png_writer(const std::string& path, co
     return fail(ErrorKind::bad_request, "PNG is written with 8 or 16 bits");
   auto chosen = pick_display_channels(spec, path);
   if (!chosen) return std::unexpected(chosen.error());
+  auto transform = DisplayTransform::create(std::move(*chosen), options.working, options.tone,
+                                            options.ocio_view);
+  if (!transform) return std::unexpected(transform.error());
   auto file = OutputFile::create(path, options.sync);
   if (!file) return std::unexpected(file.error());
-  auto writer = std::make_unique<PngWriter>(
-      spec, options, std::move(*file), DisplayTransform(std::move(*chosen), options.working, options.tone));
+  auto writer = std::make_unique<PngWriter>(spec, options, std::move(*file), std::move(*transform));
   if (auto begun = writer->start(); !begun) return std::unexpected(begun.error());
   return writer;
 }

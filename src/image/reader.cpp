@@ -6,6 +6,7 @@
 
 #include "image/exr_header.h"
 #include "image/exr_reader.h"
+#include "image/foreign.h"
 #include "image/png_reader.h"
 #include "image/to_working.h"
 
@@ -16,7 +17,9 @@ Result<std::unique_ptr<ImageReader>> open_stored(const Bytes& bytes, const ReadO
   if (bytes->size() == 0) return fail(ErrorKind::truncated, bytes->name() + " is empty");
   if (is_exr(*bytes)) return open_exr(bytes, options);
   if (is_png(*bytes)) return open_png(bytes, options);
-  return fail(ErrorKind::not_an_image, bytes->name() + " is not an image of a known format");
+  if (is_almost_png(*bytes))
+    return fail(ErrorKind::damaged, bytes->name() + " is a PNG file whose first bytes are damaged");
+  return open_foreign(bytes, options);
 }
 
 }  // namespace
@@ -52,7 +55,8 @@ Result<Image> read_image(ImageReader& reader, const ReadLimits& limits,
     }
   }
 
-  // Read them, a band at a time, so that a file that ends early is found before all memory is touched.
+  // Read them, a band at a time, so that a file that ends early is found before all memory is
+  // touched.
   const Window& data = image.spec.data;
   const double bytes = double(data.pixels()) * double(chosen.size()) * sizeof(float);
   if (bytes > double(limits.max_bytes))
@@ -67,7 +71,8 @@ Result<Image> read_image(ImageReader& reader, const ReadLimits& limits,
       const int end = std::min(y + band, data.y1);
       const auto from = static_cast<std::size_t>(std::int64_t{y - data.y0} * data.width());
       for (std::size_t c = 0; c < chosen.size(); ++c) {
-        image.planes[c].resize(from + static_cast<std::size_t>(std::int64_t{end - y} * data.width()));
+        image.planes[c].resize(from +
+                               static_cast<std::size_t>(std::int64_t{end - y} * data.width()));
         rows[c] = image.planes[c].data() + from;
       }
       if (auto done = reader.read_rows(y, end, chosen, rows); !done)

@@ -1,5 +1,6 @@
-// Reading images, a whole one or rows at a time, so that a huge image need never be wholly in memory.
-// open_reader() tells the format by the file's first bytes: EXR and PNG here, everything else through OpenImageIO.
+// Reading images, a whole one or rows at a time, so that a huge image need never be wholly in
+// memory. open_reader() tells the format by the file's first bytes: EXR and PNG here, everything
+// else through OpenImageIO.
 #pragma once
 
 #include <memory>
@@ -23,9 +24,11 @@ struct ReadLimits {
 
 struct ReadOptions {
   ReadLimits limits;
-  // Turn colour channels into linear light with premultiplied alpha and these primaries. Nothing: as stored.
+  // Turn colour channels into linear light with premultiplied alpha and these primaries. Nothing:
+  // as stored.
   std::optional<ColourSpace> working = ColourSpace::lin_rec709;
-  std::string view;  // of a stereo file the view whose channels have no prefix; empty: the file's first
+  std::string
+      view;  // of a stereo file the view whose channels have no prefix; empty: the file's first
 };
 
 // An open image. Not to be used from two threads at once.
@@ -38,8 +41,8 @@ class ImageReader {
 
   const ImageSpec& spec() const { return spec_; }
 
-  // Rows [y0, y1) of the data window: planes[i] receives channel channels[i] as data-width * (y1 - y0) floats.
-  // Any order of rows works; increasing order is fast in every format.
+  // Rows [y0, y1) of the data window: planes[i] receives channel channels[i] as data-width * (y1 -
+  // y0) floats. Any order of rows works; increasing order is fast in every format.
   virtual Result<void> read_rows(int y0, int y1, std::span<const int> channels,
                                  std::span<float* const> planes) = 0;
 
@@ -49,7 +52,8 @@ class ImageReader {
 
 Result<std::unique_ptr<ImageReader>> open_reader(const std::string& path,
                                                  const ReadOptions& options = {});
-Result<std::unique_ptr<ImageReader>> open_reader(const Bytes& bytes, const ReadOptions& options = {});
+Result<std::unique_ptr<ImageReader>> open_reader(const Bytes& bytes,
+                                                 const ReadOptions& options = {});
 
 // The whole image. `channels` limits it to these names; empty: all.
 Result<Image> read_image(const std::string& path, const ReadOptions& options = {},
@@ -57,7 +61,8 @@ Result<Image> read_image(const std::string& path, const ReadOptions& options = {
 Result<Image> read_image(ImageReader& reader, const ReadLimits& limits,
                          std::span<const std::string> channels = {});
 
-// Threads that decode and encode EXR besides the caller's; for the whole process. 0, the default: none.
+// Threads that decode and encode EXR besides the caller's; for the whole process. 0, the default:
+// none.
 void set_codec_threads(int count);
 
 }  // namespace pse::image

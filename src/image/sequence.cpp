@@ -2,9 +2,9 @@
 #include "image/sequence.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cstdint>
-#include <cctype>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -15,8 +15,10 @@ namespace {
 constexpr std::size_t most_frames = 1'000'000;
 
 std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front()))) text.remove_prefix(1);
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.remove_suffix(1);
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())))
+    text.remove_prefix(1);
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())))
+    text.remove_suffix(1);
   return text;
 }
 
@@ -77,8 +79,9 @@ std::expected<std::optional<Place>, std::string> find_pattern(std::string_view n
       const bool zero = rest.starts_with('0');
       if (zero) here.digits = take_number(rest).value_or(1);
       if (!rest.starts_with('d') || here.digits < 0)
-        return std::unexpected("in \"" + std::string(name) +
-                               "\" the % is no frame number; write %04d for one, %% for a percent sign");
+        return std::unexpected(
+            "in \"" + std::string(name) +
+            "\" the % is no frame number; write %04d for one, %% for a percent sign");
       here.end = name.size() - rest.size() + 1;
     } else {
       ++i;
@@ -153,7 +156,8 @@ std::expected<std::string, std::string> canonical_pattern(std::string_view name)
   if (!*place) return std::string(name);
   const int digits = (*place)->digits;
   const std::string format = digits <= 1 ? "%d" : "%0" + std::to_string(digits) + "d";
-  return std::string(name.substr(0, (*place)->begin)) + format + std::string(name.substr((*place)->end));
+  return std::string(name.substr(0, (*place)->begin)) + format +
+         std::string(name.substr((*place)->end));
 }
 
 std::expected<std::string, std::string> frame_name(std::string_view pattern, int frame) {
@@ -171,8 +175,9 @@ std::vector<int> existing_frames(std::string_view pattern) {
   const auto slash = pattern.rfind('/');
   if (slash != std::string_view::npos && slash > (*place)->begin) return {};
   const std::size_t start = slash == std::string_view::npos ? 0 : slash + 1;
-  const std::string folder =
-      slash == std::string_view::npos ? "." : unescaped(pattern.substr(0, std::max<std::size_t>(slash, 1)));
+  const std::string folder = slash == std::string_view::npos
+                                 ? "."
+                                 : unescaped(pattern.substr(0, std::max<std::size_t>(slash, 1)));
   const std::string head = unescaped(pattern.substr(start, (*place)->begin - start));
   const std::string tail = unescaped(pattern.substr((*place)->end));
 
@@ -181,13 +186,15 @@ std::vector<int> existing_frames(std::string_view pattern) {
   for (std::filesystem::directory_iterator at(folder, problem), end; !problem && at != end;
        at.increment(problem)) {
     const std::string name = at->path().filename().string();
-    if (name.size() <= head.size() + tail.size() || !name.starts_with(head) || !name.ends_with(tail))
+    if (name.size() <= head.size() + tail.size() || !name.starts_with(head) ||
+        !name.ends_with(tail))
       continue;
     std::string_view digits(name);
     digits = digits.substr(head.size(), name.size() - head.size() - tail.size());
     std::string_view rest = digits;
     const auto frame = take_number(rest);
-    if (frame && rest.empty() && padded(*frame, (*place)->digits) == digits) frames.push_back(*frame);
+    if (frame && rest.empty() && padded(*frame, (*place)->digits) == digits)
+      frames.push_back(*frame);
   }
   std::sort(frames.begin(), frames.end());
   return frames;

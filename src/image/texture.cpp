@@ -16,13 +16,15 @@ int wrapped(int i, int n, Wrap wrap) {
       const int rest = i % n;
       return rest < 0 ? rest + n : rest;
     }
-    case Wrap::clamp: return i < 0 ? 0 : n - 1;
+    case Wrap::clamp:
+      return i < 0 ? 0 : n - 1;
     case Wrap::mirror: {
       int rest = i % (2 * n);
       if (rest < 0) rest += 2 * n;
       return rest < n ? rest : 2 * n - 1 - rest;
     }
-    case Wrap::black: return -1;
+    case Wrap::black:
+      return -1;
   }
   return -1;
 }
@@ -30,13 +32,15 @@ int wrapped(int i, int n, Wrap wrap) {
 // A coordinate brought near the image, so that texel numbers stay small whatever it was.
 float brought_near(float u, Wrap wrap) {
   switch (wrap) {
-    case Wrap::repeat: return u - std::floor(u);
+    case Wrap::repeat:
+      return u - std::floor(u);
     case Wrap::mirror: {
       const float t = u - 2.0f * std::floor(u * 0.5f);
       return t > 1.0f ? 2.0f - t : t;
     }
     case Wrap::clamp:
-    case Wrap::black: return std::clamp(u, -4.0f, 5.0f);
+    case Wrap::black:
+      return std::clamp(u, -4.0f, 5.0f);
   }
   return 0;
 }
@@ -124,16 +128,22 @@ void Texture::look_up(float u, float v, float size, Filter filter, Wrap wrap, fl
   const Level& full = levels_.front();
   switch (filter) {
     case Filter::nearest: {
-      const int x = wrapped(static_cast<int>(std::floor(u * static_cast<float>(full.width))), full.width, wrap);
-      const int y = wrapped(static_cast<int>(std::floor(v * static_cast<float>(full.height))), full.height, wrap);
+      const int x = wrapped(static_cast<int>(std::floor(u * static_cast<float>(full.width))),
+                            full.width, wrap);
+      const int y = wrapped(static_cast<int>(std::floor(v * static_cast<float>(full.height))),
+                            full.height, wrap);
       if (x < 0 || y < 0) return;
       const std::size_t at = static_cast<std::size_t>(std::int64_t{y} * full.width + x);
-      std::copy_n(full.texels.data() + at * static_cast<std::size_t>(components_), components_, result);
+      std::copy_n(full.texels.data() + at * static_cast<std::size_t>(components_), components_,
+                  result);
       return;
     }
-    case Filter::linear: return look_up_linear(full, u, v, wrap, result);
-    case Filter::cubic: return look_up_cubic(u, v, wrap, result);
-    case Filter::mipmap: return look_up_mipmap(u, v, size, wrap, result);
+    case Filter::linear:
+      return look_up_linear(full, u, v, wrap, result);
+    case Filter::cubic:
+      return look_up_cubic(u, v, wrap, result);
+    case Filter::mipmap:
+      return look_up_mipmap(u, v, size, wrap, result);
   }
 }
 
@@ -141,15 +151,18 @@ void Texture::look_up(float u, float v, float size, Filter filter, Wrap wrap, fl
 void Texture::look_up_linear(const Level& level, float u, float v, Wrap wrap, float* result) const {
   const Between bx = between(u * static_cast<float>(level.width));
   const Between by = between(v * static_cast<float>(level.height));
-  const std::array<int, 2> xs = {wrapped(bx.first, level.width, wrap), wrapped(bx.first + 1, level.width, wrap)};
-  const std::array<int, 2> ys = {wrapped(by.first, level.height, wrap), wrapped(by.first + 1, level.height, wrap)};
+  const std::array<int, 2> xs = {wrapped(bx.first, level.width, wrap),
+                                 wrapped(bx.first + 1, level.width, wrap)};
+  const std::array<int, 2> ys = {wrapped(by.first, level.height, wrap),
+                                 wrapped(by.first + 1, level.height, wrap)};
   const auto n = static_cast<std::size_t>(components_);
   for (std::size_t c = 0; c < n; ++c) {
     std::array<float, 4> corner{};
     for (std::size_t i = 0; i < 4; ++i) {
       const int x = xs[i & 1], y = ys[i >> 1];
       if (x >= 0 && y >= 0)
-        corner[i] = level.texels[static_cast<std::size_t>(std::int64_t{y} * level.width + x) * n + c];
+        corner[i] =
+            level.texels[static_cast<std::size_t>(std::int64_t{y} * level.width + x) * n + c];
     }
     // Where the weight is 0 the texel must not count, even if it is infinite.
     const auto mix = [](float a, float b, float t) { return t == 0 ? a : a + t * (b - a); };
@@ -182,7 +195,8 @@ void Texture::look_up_cubic(float u, float v, Wrap wrap, float* result) const {
 }
 
 void Texture::look_up_mipmap(float u, float v, float size, Wrap wrap, float* result) const {
-  // How many texels of the full size the value shall cover, and which level has texels of that size.
+  // How many texels of the full size the value shall cover, and which level has texels of that
+  // size.
   const float texels = size * static_cast<float>(std::max(width(), height()));
   if (!(texels > 1.0f)) return look_up_linear(levels_.front(), u, v, wrap, result);
   const auto& smaller = pyramid();
@@ -215,8 +229,9 @@ Texture::Level Texture::halved(const Level& from) const {
         double sum = 0;
         for (std::size_t j = 0; j < row.weights.size(); ++j)
           for (std::size_t i = 0; i < column.weights.size(); ++i) {
-            const std::size_t at = (static_cast<std::size_t>(row.first) + j) * static_cast<std::size_t>(from.width) +
-                                   static_cast<std::size_t>(column.first) + i;
+            const std::size_t at =
+                (static_cast<std::size_t>(row.first) + j) * static_cast<std::size_t>(from.width) +
+                static_cast<std::size_t>(column.first) + i;
             sum += row.weights[j] * column.weights[i] * double{from.texels[at * n + c]};
           }
         to.texels[out++] = static_cast<float>(sum);
@@ -238,10 +253,12 @@ const std::vector<Texture::Level>& Texture::pyramid() const {
   return smaller_;
 }
 
-TextureCache::TextureCache(ReadOptions options, std::function<std::string(const std::string&)> resolve)
+TextureCache::TextureCache(ReadOptions options,
+                           std::function<std::string(const std::string&)> resolve)
     : options_(std::move(options)), resolve_(std::move(resolve)) {}
 
-Result<TextureCache::Opened> TextureCache::open(const std::string& file, const std::string& layer) const {
+Result<TextureCache::Opened> TextureCache::open(const std::string& file,
+                                                const std::string& layer) const {
   ReadOptions options = options_;
   if (layer == "data") options.working.reset();
   auto reader = open_reader(resolve_ ? resolve_(file) : file, options);
@@ -269,12 +286,14 @@ Result<int> TextureCache::components(const std::string& file, const std::string&
   return opened->layer.components();
 }
 
-Result<std::shared_ptr<const Texture>> TextureCache::read(const std::string& file, const std::string& layer) const {
+Result<std::shared_ptr<const Texture>> TextureCache::read(const std::string& file,
+                                                          const std::string& layer) const {
   auto opened = open(file, layer);
   if (!opened) return std::unexpected(opened.error());
   // The frame is kept whole, even where only a part of it has data.
   const ImageSpec& spec = opened->reader->spec();
-  if (double(spec.display.pixels()) * opened->layer.components() * sizeof(float) > double(options_.limits.max_bytes) ||
+  if (double(spec.display.pixels()) * opened->layer.components() * sizeof(float) >
+          double(options_.limits.max_bytes) ||
       spec.display.width() < 1 || spec.display.height() < 1)
     return fail(ErrorKind::too_large, file + " is too large for a texture");
   std::vector<std::string> names;
@@ -294,7 +313,8 @@ Result<std::shared_ptr<const Texture>> TextureCache::read(const std::string& fil
   }
 }
 
-Result<std::shared_ptr<const Texture>> TextureCache::load(const std::string& file, const std::string& layer) {
+Result<std::shared_ptr<const Texture>> TextureCache::load(const std::string& file,
+                                                          const std::string& layer) {
   std::shared_ptr<Entry> entry;
   {
     const std::lock_guard lock(mutex_);
@@ -306,7 +326,8 @@ Result<std::shared_ptr<const Texture>> TextureCache::load(const std::string& fil
   return entry->texture;
 }
 
-void TextureCall::run(void* self, std::int64_t count, const float* const* arguments, float* const* results) {
+void TextureCall::run(void* self, std::int64_t count, const float* const* arguments,
+                      float* const* results) {
   const auto& call = *static_cast<const TextureCall*>(self);
   const auto n = static_cast<std::size_t>(call.texture->components());
   std::array<float, 16> few{};

@@ -1,6 +1,7 @@
-// An image looked up at any coordinates: `texture("wood.exr", u, v)` of the language. (0, 0) is the lower left corner of the
-// frame, (1, 1) the upper right one; pixels of the frame without data are 0. The result of a lookup depends on nothing
-// but its arguments, so it has the same bits in batches of any size.
+// An image looked up at any coordinates: `texture("wood.exr", u, v)` of the language. (0, 0) is the
+// lower left corner of the frame, (1, 1) the upper right one; pixels of the frame without data are
+// 0. The result of a lookup depends on nothing but its arguments, so it has the same bits in
+// batches of any size.
 #pragma once
 
 #include <cstdint>
@@ -43,8 +44,9 @@ class Texture {
   int height() const { return levels_.front().height; }
   int components() const { return components_; }
 
-  // `size` is the width that the value shall cover, in units of u and v; only Filter::mipmap looks at it. Between powers
-  // of two the level is chosen linearly in `size`. Where u or v is NaN or infinite the result is 0.
+  // `size` is the width that the value shall cover, in units of u and v; only Filter::mipmap looks
+  // at it. Between powers of two the level is chosen linearly in `size`. Where u or v is NaN or
+  // infinite the result is 0.
   void look_up(float u, float v, float size, Filter filter, Wrap wrap, float* result) const;
 
  private:
@@ -67,11 +69,13 @@ class Texture {
 // Textures by file and layer, each loaded once. Safe to use from several threads.
 class TextureCache {
  public:
-  // `resolve` turns a program's file name into a path (the asset folders of PSE_PATH); empty: as it is.
+  // `resolve` turns a program's file name into a path (the asset folders of PSE_PATH); empty: as it
+  // is.
   explicit TextureCache(ReadOptions options = {},
                         std::function<std::string(const std::string&)> resolve = {});
 
-  // The layer `data` is the file's first channels, up to four, exactly as stored: for normal maps kept in PNG.
+  // The layer `data` is the file's first channels, up to four, exactly as stored: for normal maps
+  // kept in PNG.
   Result<std::shared_ptr<const Texture>> load(const std::string& file, const std::string& layer);
   // How many components that layer has; looks only at the header.
   Result<int> components(const std::string& file, const std::string& layer);
@@ -86,7 +90,8 @@ class TextureCache {
     Result<std::shared_ptr<const Texture>> texture = std::shared_ptr<const Texture>();
   };
   Result<Opened> open(const std::string& file, const std::string& layer) const;
-  Result<std::shared_ptr<const Texture>> read(const std::string& file, const std::string& layer) const;
+  Result<std::shared_ptr<const Texture>> read(const std::string& file,
+                                              const std::string& layer) const;
 
   ReadOptions options_;
   std::function<std::string(const std::string&)> resolve_;
@@ -94,15 +99,16 @@ class TextureCache {
   std::map<std::pair<std::string, std::string>, std::shared_ptr<Entry>> entries_;
 };
 
-// One texture() of a program, as a function of the host for the kernel (codegen/kernel.h): arguments u, v and perhaps the
-// width; results the components.
+// One texture() of a program, as a function of the host for the kernel (codegen/kernel.h):
+// arguments u, v and perhaps the width; results the components.
 struct TextureCall {
   std::shared_ptr<const Texture> texture;
   Filter filter = Filter::linear;
   Wrap wrap = Wrap::repeat;
   bool has_width = false;
 
-  static void run(void* self, std::int64_t count, const float* const* arguments, float* const* results);
+  static void run(void* self, std::int64_t count, const float* const* arguments,
+                  float* const* results);
 };
 
 }  // namespace pse::image

@@ -22,7 +22,8 @@ std::vector<Colour> colours_of(const ImageSpec& spec) {
     const int r = spec.find(layer + "R"), g = spec.find(layer + "G"), b = spec.find(layer + "B");
     if (g >= 0 && b >= 0) found.push_back({{r, g, b}, spec.find(layer + "A")});
   }
-  if (spec.find("R") < 0 && spec.find("Y") >= 0) found.push_back({{spec.find("Y")}, spec.find("A")});
+  if (spec.find("R") < 0 && spec.find("Y") >= 0)
+    found.push_back({{spec.find("Y")}, spec.find("A")});
   return found;
 }
 
@@ -32,7 +33,8 @@ class Working : public ImageReader {
       : stored_(std::move(stored)), colours_(colours_of(stored_->spec())) {
     const ImageSpec& from = stored_->spec();
     spec_ = from;
-    const Chromaticities own = from.chromaticities.value_or(chromaticities_of(ColourSpace::lin_rec709));
+    const Chromaticities own =
+        from.chromaticities.value_or(chromaticities_of(ColourSpace::lin_rec709));
     const Chromaticities& wanted = chromaticities_of(working);
     matrix_ = colour_matrix(own, wanted);
     adapt_ = false;
@@ -64,7 +66,8 @@ class Working : public ImageReader {
       where.at(static_cast<std::size_t>(channels[i])) = planes[i];
     std::vector<std::vector<float>> extra;
     std::vector<const Colour*> touched;
-    const std::size_t size = static_cast<std::size_t>(spec_.data.width()) * static_cast<std::size_t>(y1 - y0);
+    const std::size_t size =
+        static_cast<std::size_t>(spec_.data.width()) * static_cast<std::size_t>(y1 - y0);
     for (const Colour& colour : colours_) {
       const auto asked = [&](int c) { return where[static_cast<std::size_t>(c)] != nullptr; };
       if (!std::any_of(colour.values.begin(), colour.values.end(), asked)) continue;
@@ -102,7 +105,8 @@ class Working : public ImageReader {
       if (from.transfer == Transfer::srgb)
         for (std::size_t i = 0; i < size; ++i) value[i] = srgb_decode(value[i]);
       if (from.transfer == Transfer::power)
-        for (std::size_t i = 0; i < size; ++i) value[i] = std::pow(std::max(value[i], 0.0f), from.gamma);
+        for (std::size_t i = 0; i < size; ++i)
+          value[i] = std::pow(std::max(value[i], 0.0f), from.gamma);
       if (alpha != nullptr && from.alpha == Alpha::straight)
         for (std::size_t i = 0; i < size; ++i) value[i] *= alpha[i];
     }

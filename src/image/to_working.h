@@ -1,5 +1,6 @@
-// Brings what a file stores to what programs see: linear light, premultiplied alpha, the working space's primaries.
-// Only colour channels (R G B, Y, and such triples in layers) are touched; data channels pass as they are.
+// Brings what a file stores to what programs see: linear light, premultiplied alpha, the working
+// space's primaries. Only colour channels (R G B, Y, and such triples in layers) are touched; data
+// channels pass as they are.
 #pragma once
 
 #include "image/reader.h"

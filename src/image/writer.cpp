@@ -1,4 +1,5 @@
-// What all writers share: the order of rows, tiles collected into rows, the choice of format; see writer.h.
+// What all writers share: the order of rows, tiles collected into rows, the choice of format; see
+// writer.h.
 #include "image/writer.h"
 
 #include <algorithm>
@@ -6,6 +7,7 @@
 #include <cctype>
 
 #include "image/exr_writer.h"
+#include "image/foreign.h"
 #include "image/framed.h"
 #include "image/png_writer.h"
 
@@ -87,12 +89,11 @@ std::string format_of_name(const std::string& path) {
   if (ending == "tif") return "tiff";
   if (ending == "tga") return "targa";
   if (ending == "rgbe") return "hdr";
+  if (ending == "pgm" || ending == "pnm") return "ppm";
   return ending;
 }
 
-bool is_display_format(std::string_view format) {
-  return format != "exr" && format != "hdr" && format != "pfm";
-}
+bool is_display_format(std::string_view format) { return format != "exr" && format != "hdr"; }
 
 Result<std::unique_ptr<ImageWriter>> open_writer(const std::string& path, const ImageSpec& spec,
                                                  const WriteOptions& options) {
@@ -115,8 +116,7 @@ Result<std::unique_ptr<ImageWriter>> open_writer(const std::string& path, const 
     if (name.empty() || name.size() > 255 || name.find('\0') != std::string::npos)
       return fail(ErrorKind::bad_request, "a channel for " + shown + " has no usable name");
     if (spec.find(name) != static_cast<int>(i))
-      return fail(ErrorKind::bad_request,
-                  "two channels for " + shown + " have the name " + name);
+      return fail(ErrorKind::bad_request, "two channels for " + shown + " have the name " + name);
   }
 
   if (format == "exr") return open_exr_writer(path, spec, options);
@@ -125,9 +125,11 @@ Result<std::unique_ptr<ImageWriter>> open_writer(const std::string& path, const 
   ImageSpec framed = spec;
   framed.data = framed.display = {0, 0, spec.display.width(), spec.display.height()};
   Result<std::unique_ptr<ImageWriter>> writer =
-      fail(ErrorKind::unsupported, "the name " + shown +
-                                       " does not say a format that can be written; use .exr or .png");
+      fail(ErrorKind::unsupported,
+           "the name " + shown +
+               " does not say a format that can be written; use .exr, .png, .jpg or .tif");
   if (format == "png") writer = open_png_writer(path, framed, options);
+  if (is_foreign_format(format)) writer = open_foreign_writer(path, format, framed, options);
   if (!writer || spec.data == spec.display) return writer;
   return put_in_frame(std::move(*writer), spec);
 }

@@ -1,5 +1,6 @@
-// Writing images, fed by rows or by tiles, so that a huge image need never be wholly in memory. The file takes its place
-// only at close(); without it, or after any error, what was there before stays.
+// Writing images, fed by rows or by tiles, so that a huge image need never be wholly in memory. The
+// file takes its place only at close(); without it, or after any error, what was there before
+// stays.
 #pragma once
 
 #include <memory>
@@ -27,7 +28,8 @@ struct WriteOptions {
   ColourSpace working = ColourSpace::lin_rec709;
   // PNG, JPEG and the like
   Tone tone = Tone::clip;
-  int bits = 8;  // 8 or 16
+  std::string ocio_view;  // of Tone::ocio: "view" or "display/view"; empty: the default
+  int bits = 8;           // 8 or 16
   bool dither = true;
   int quality = 95;  // of lossy formats
   bool sync = true;  // wait for the disk before the file takes its place
@@ -44,12 +46,13 @@ class ImageWriter {
   const ImageSpec& spec() const { return spec_; }
   int next_row() const { return next_; }
 
-  // Rows [next_row(), next_row() + count): planes[c] is channel c of the spec, each row `stride` floats after the last
-  // (0: the width of the data window).
-  Result<void> write_rows(int count, std::span<const float* const> planes, std::ptrdiff_t stride = 0);
+  // Rows [next_row(), next_row() + count): planes[c] is channel c of the spec, each row `stride`
+  // floats after the last (0: the width of the data window).
+  Result<void> write_rows(int count, std::span<const float* const> planes,
+                          std::ptrdiff_t stride = 0);
 
-  // A tile, row by row. Tiles of one row of tiles come in any order and have the same height; rows of tiles come from
-  // top to bottom.
+  // A tile, row by row. Tiles of one row of tiles come in any order and have the same height; rows
+  // of tiles come from top to bottom.
   Result<void> write_tile(const Window& tile, std::span<const float* const> planes);
 
   // Finishes the file and puts it in its place. Rows that are missing make it an error.
@@ -74,9 +77,11 @@ class ImageWriter {
 
 Result<std::unique_ptr<ImageWriter>> open_writer(const std::string& path, const ImageSpec& spec,
                                                  const WriteOptions& options = {});
-Result<void> write_image(const std::string& path, const Image& image, const WriteOptions& options = {});
+Result<void> write_image(const std::string& path, const Image& image,
+                         const WriteOptions& options = {});
 
-// The format that a name asks for: its extension in lower case with synonyms resolved ("jpg" is "jpeg").
+// The format that a name asks for: its extension in lower case with synonyms resolved ("jpg" is
+// "jpeg").
 std::string format_of_name(const std::string& path);
 // Whether the format stores colours for display, through the display transform, rather than light.
 bool is_display_format(std::string_view format);

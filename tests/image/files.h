@@ -1,4 +1,5 @@
-// What the tests of images share: a folder that vanishes, the real files, small images with known numbers.
+// What the tests of images share: a folder that vanishes, the real files, small images with known
+// numbers.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -59,11 +60,12 @@ inline std::string real_file(const std::string& name) {
   return {};
 }
 
-#define PSE_REAL_FILE(variable, name)                                      \
-  const std::string variable = pse::image::test::real_file(name);          \
+#define PSE_REAL_FILE(variable, name)                             \
+  const std::string variable = pse::image::test::real_file(name); \
   if (variable.empty()) GTEST_SKIP() << name << " is not in ../shared/data"
 
-// An image whose every number tells where it is: channel + x / 64 + y / 4096, exact in half for small x and y.
+// An image whose every number tells where it is: channel + x / 64 + y / 4096, exact in half for
+// small x and y.
 inline Image numbered(Window display, Window data, std::vector<Channel> channels) {
   ImageSpec spec;
   spec.display = display;
@@ -73,9 +75,9 @@ inline Image numbered(Window display, Window data, std::vector<Channel> channels
   for (std::size_t c = 0; c < image.planes.size(); ++c)
     for (int y = data.y0; y < data.y1; ++y)
       for (int x = data.x0; x < data.x1; ++x)
-        image.pixel(static_cast<int>(c), x, y) =
-            static_cast<float>(c) + static_cast<float>(x - data.x0) / 16.0f +
-            static_cast<float>(y - data.y0) / 256.0f;
+        image.pixel(static_cast<int>(c), x, y) = static_cast<float>(c) +
+                                                 static_cast<float>(x - data.x0) / 16.0f +
+                                                 static_cast<float>(y - data.y0) / 256.0f;
   return image;
 }
 

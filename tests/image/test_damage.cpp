@@ -1,5 +1,6 @@
-// Broken files: cut short, with flipped bits, with headers that lie. Each must give an error or an image, and nothing
-// else: no crash, no hang, no allocation that the file does not justify. (The same, without end: fuzz/image_read.)
+// Broken files: cut short, with flipped bits, with headers that lie. Each must give an error or an
+// image, and nothing else: no crash, no hang, no allocation that the file does not justify. (The
+// same, without end: fuzz/image_read.)
 #include <algorithm>
 #include <cstring>
 #include <random>
@@ -16,8 +17,12 @@ std::vector<std::pair<std::string, Content>> samples() {
   Folder folder;
   std::vector<std::pair<std::string, Content>> list;
   const Image image = numbered({0, 0, 31, 22}, {-2, 1, 29, 23},
-                               {{"A", PixelType::float16}, {"B", PixelType::float16}, {"G", PixelType::float16},
-                                {"N.X", PixelType::float32}, {"R", PixelType::float16}, {"id.Y", PixelType::uint32}});
+                               {{"A", PixelType::float16},
+                                {"B", PixelType::float16},
+                                {"G", PixelType::float16},
+                                {"N.X", PixelType::float32},
+                                {"R", PixelType::float16},
+                                {"id.Y", PixelType::uint32}});
   for (const auto method : {Compression::none, Compression::rle, Compression::zip, Compression::piz,
                             Compression::pxr24, Compression::b44a, Compression::dwaa})
     for (const int tile : {0, 8}) {
@@ -25,11 +30,13 @@ std::vector<std::pair<std::string, Content>> samples() {
       options.compression = method;
       options.tile_width = options.tile_height = tile;
       EXPECT_TRUE(write_image(folder / "a.exr", image, options));
-      list.emplace_back("exr " + std::to_string(static_cast<int>(method)) + " " + std::to_string(tile),
-                        content_of(folder / "a.exr"));
+      list.emplace_back(
+          "exr " + std::to_string(static_cast<int>(method)) + " " + std::to_string(tile),
+          content_of(folder / "a.exr"));
     }
-  const Image colours = numbered({0, 0, 31, 22}, {0, 0, 31, 22},
-                                 {{"R", PixelType::float16}, {"G", PixelType::float16}, {"B", PixelType::float16}});
+  const Image colours =
+      numbered({0, 0, 31, 22}, {0, 0, 31, 22},
+               {{"R", PixelType::float16}, {"G", PixelType::float16}, {"B", PixelType::float16}});
   for (const int bits : {8, 16}) {
     WriteOptions options;
     options.bits = bits;
@@ -58,14 +65,16 @@ TEST(Damage, CutShortAnywhere) {
     ASSERT_TRUE(read_memory(content)) << name;
     const std::size_t step = std::max<std::size_t>(1, content.size() / 300);
     for (std::size_t length = 0; length < content.size(); length += step) {
-      const auto read = read_memory(Content(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(length)));
+      const auto read = read_memory(
+          Content(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(length)));
       // What follows a PNG's last pixel may be missing.
       if (name.starts_with("png") && length + 16 >= content.size()) continue;
       ASSERT_FALSE(read) << name << " cut to " << length;
       EXPECT_FALSE(read.error().message.empty());
       EXPECT_FALSE(read.error().is_output());
       if (length > 400 && name.starts_with("png")) {
-        EXPECT_EQ(read.error().kind, ErrorKind::truncated) << name << " cut to " << length << message_of(read);
+        EXPECT_EQ(read.error().kind, ErrorKind::truncated)
+            << name << " cut to " << length << message_of(read);
       }
     }
   }
@@ -77,7 +86,8 @@ TEST(Damage, FlippedBytes) {
     for (int i = 0; i < 300; ++i) {
       Content broken = content;
       // Most of the harm lies in the header.
-      const std::size_t reach = i % 3 == 0 ? content.size() : std::min<std::size_t>(content.size(), 450);
+      const std::size_t reach =
+          i % 3 == 0 ? content.size() : std::min<std::size_t>(content.size(), 450);
       for (int n = 0; n <= i % 4; ++n)
         broken[random() % reach] = static_cast<unsigned char>(i % 5 == 0 ? 0xff : random());
       const auto read = read_memory(broken);
@@ -91,10 +101,10 @@ TEST(Damage, HeadersThatClaimTooMuch) {
     struct Case {
       std::int32_t x0, y0, x1, y1;
     };
-    for (const Case& window : {Case{0, 0, 2147483647, 2147483647}, Case{0, 0, 99999, 99999},
-                               Case{-2147483647 - 1, 0, 2147483647, 0}, Case{0, 0, 0, 2147483647},
-                               Case{5, 5, 4, 4}, Case{0, 0, 2000, 2000}, Case{0, 0, 4000000, 0},
-                               Case{2147483600, 0, 2147483647, 10}}) {
+    for (const Case& window :
+         {Case{0, 0, 2147483647, 2147483647}, Case{0, 0, 99999, 99999},
+          Case{-2147483647 - 1, 0, 2147483647, 0}, Case{0, 0, 0, 2147483647}, Case{5, 5, 4, 4},
+          Case{0, 0, 2000, 2000}, Case{0, 0, 4000000, 0}, Case{2147483600, 0, 2147483647, 10}}) {
       Content broken = content;
       const std::int32_t values[4] = {window.x0, window.y0, window.x1, window.y1};
       const std::string head = "dataWindow" + std::string("\0box2i\0\x10\0\0\0", 11);
@@ -111,12 +121,18 @@ TEST(Damage, PngThatClaimsTooMuch) {
   for (auto [name, content] : samples()) {
     if (!name.starts_with("png")) continue;
     // Width and height in the first chunk, with its checksum put right.
-    for (const auto& [width, height] : {std::pair{0x7fffffffu, 0x7fffffffu}, {60000u, 60000u}, {2000u, 2000u}, {0u, 5u},
-                                        {1u, 0x7fffffffu}, {0x7fffffffu, 1u}}) {
+    for (const auto& [width, height] : {std::pair{0x7fffffffu, 0x7fffffffu},
+                                        {60000u, 60000u},
+                                        {2000u, 2000u},
+                                        {0u, 5u},
+                                        {1u, 0x7fffffffu},
+                                        {0x7fffffffu, 1u}}) {
       Content broken = content;
       for (int i = 0; i < 4; ++i) {
-        broken[static_cast<std::size_t>(16 + i)] = static_cast<unsigned char>(width >> (24 - 8 * i));
-        broken[static_cast<std::size_t>(20 + i)] = static_cast<unsigned char>(height >> (24 - 8 * i));
+        broken[static_cast<std::size_t>(16 + i)] =
+            static_cast<unsigned char>(width >> (24 - 8 * i));
+        broken[static_cast<std::size_t>(20 + i)] =
+            static_cast<unsigned char>(height >> (24 - 8 * i));
       }
       std::uint32_t crc = 0xffffffffu;
       for (std::size_t i = 12; i < 29; ++i) {
@@ -124,7 +140,8 @@ TEST(Damage, PngThatClaimsTooMuch) {
         for (int k = 0; k < 8; ++k) crc = (crc & 1) != 0 ? 0xedb88320u ^ (crc >> 1) : crc >> 1;
       }
       crc = ~crc;
-      for (int i = 0; i < 4; ++i) broken[static_cast<std::size_t>(29 + i)] = static_cast<unsigned char>(crc >> (24 - 8 * i));
+      for (int i = 0; i < 4; ++i)
+        broken[static_cast<std::size_t>(29 + i)] = static_cast<unsigned char>(crc >> (24 - 8 * i));
       EXPECT_FALSE(read_memory(broken)) << width << " x " << height;
     }
   }

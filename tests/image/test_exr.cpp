@@ -10,9 +10,9 @@ namespace {
 
 using namespace test;
 
-const std::vector<Channel> rgba_and_data = {{"A", PixelType::float16},   {"B", PixelType::float16},
-                                            {"G", PixelType::float16},   {"N.X", PixelType::float32},
-                                            {"R", PixelType::float16},   {"Z", PixelType::float32},
+const std::vector<Channel> rgba_and_data = {{"A", PixelType::float16},  {"B", PixelType::float16},
+                                            {"G", PixelType::float16},  {"N.X", PixelType::float32},
+                                            {"R", PixelType::float16},  {"Z", PixelType::float32},
                                             {"id.Y", PixelType::uint32}};
 
 void expect_same_bits(const Image& a, const Image& b) {
@@ -62,8 +62,8 @@ TEST(Exr, WindowsAreKept) {
 
 TEST(Exr, SpecialNumbersSurvive) {
   Folder folder;
-  Image image = numbered({0, 0, 4, 1}, {0, 0, 4, 1},
-                         {{"A", PixelType::float16}, {"f", PixelType::float32}});
+  Image image =
+      numbered({0, 0, 4, 1}, {0, 0, 4, 1}, {{"A", PixelType::float16}, {"f", PixelType::float32}});
   const float inf = std::numeric_limits<float>::infinity();
   for (auto& plane : image.planes) plane = {inf, -inf, std::nanf(""), -0.0f};
   ASSERT_TRUE(write_image(folder / "a.exr", image));

@@ -75,13 +75,20 @@ TEST(Layers, NamesForWriting) {
 
 // What is written under a name comes back under that name, with its components in order.
 TEST(Layers, BackAndForth) {
-  for (const auto& [name, components] :
-       std::vector<std::pair<std::string, int>>{{"color", 3}, {"alpha", 1}, {"Z", 1}, {"N", 3},
-                                                {"uv", 2}, {"flow", 2}, {"heat", 1}, {"four", 4},
-                                                {"rim_light", 3}, {"m", 9}}) {
+  for (const auto& [name, components] : std::vector<std::pair<std::string, int>>{{"color", 3},
+                                                                                 {"alpha", 1},
+                                                                                 {"Z", 1},
+                                                                                 {"N", 3},
+                                                                                 {"uv", 2},
+                                                                                 {"flow", 2},
+                                                                                 {"heat", 1},
+                                                                                 {"four", 4},
+                                                                                 {"rim_light", 3},
+                                                                                 {"m", 9}}) {
     ImageSpec spec;
     const auto channels = channels_of(name, components);
-    for (auto it = channels.rbegin(); it != channels.rend(); ++it) spec.channels.push_back(it->channel);
+    for (auto it = channels.rbegin(); it != channels.rend(); ++it)
+      spec.channels.push_back(it->channel);
     const auto layers = layers_of(spec);
     ASSERT_EQ(layers.size(), 1u) << name;
     EXPECT_EQ(layers[0].name, name);

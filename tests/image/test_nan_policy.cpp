@@ -25,7 +25,8 @@ TEST(NanPolicy, CountsAndPlaces) {
   Image image = broken();
   const auto report = apply_nan_policy(image, NanPolicy::keep);
   ASSERT_TRUE(report);
-  EXPECT_EQ(describe(*report, image.spec), "1 NaN and 1 infinite values in heat.Y, the first at pixel (11, 21)");
+  EXPECT_EQ(describe(*report, image.spec),
+            "1 NaN and 1 infinite values in heat.Y, the first at pixel (11, 21)");
   EXPECT_TRUE(std::isnan(image.planes[0][4]));
 }
 
@@ -69,7 +70,8 @@ TEST(NanPolicy, InfiniteDepthIsNoFault) {
 TEST(NanPolicy, StreamingIsTheSame) {
   Folder folder;
   for (const auto policy : {NanPolicy::keep, NanPolicy::black, NanPolicy::box3}) {
-    Image image = numbered({0, 0, 5, 9}, {0, 0, 5, 9}, {{"a", PixelType::float32}, {"b", PixelType::float32}});
+    Image image = numbered({0, 0, 5, 9}, {0, 0, 5, 9},
+                           {{"a", PixelType::float32}, {"b", PixelType::float32}});
     for (const int at : {0, 7, 12, 44}) image.planes[1][static_cast<std::size_t>(at)] = nan_value;
     for (const int piece : {1, 2, 9}) {
       auto writer = open_writer(folder / "a.exr", image.spec);
@@ -77,7 +79,8 @@ TEST(NanPolicy, StreamingIsTheSame) {
       auto report = std::make_shared<NanReport>();
       auto repairing = with_nan_policy(std::move(*writer), policy, report);
       for (int y = 0; y < 9; y += piece) {
-        const std::vector<const float*> planes = {image.planes[0].data() + 5 * y, image.planes[1].data() + 5 * y};
+        const std::vector<const float*> planes = {image.planes[0].data() + 5 * y,
+                                                  image.planes[1].data() + 5 * y};
         ASSERT_TRUE(repairing->write_rows(std::min(piece, 9 - y), planes));
       }
       ASSERT_TRUE(repairing->close());
@@ -107,8 +110,10 @@ TEST(NanPolicy, TheRealImage) {
 // b differs from a by 0.25 in one place of one channel, and has a window one column wider.
 TEST(Compare, FindsTheDifference) {
   Folder folder;
-  Image a = numbered({0, 0, 4, 3}, {0, 0, 4, 3}, {{"A", PixelType::float32}, {"B", PixelType::float32}});
-  Image b = numbered({0, 0, 4, 3}, {-1, 0, 4, 3}, {{"A", PixelType::float32}, {"C", PixelType::float32}});
+  Image a =
+      numbered({0, 0, 4, 3}, {0, 0, 4, 3}, {{"A", PixelType::float32}, {"B", PixelType::float32}});
+  Image b =
+      numbered({0, 0, 4, 3}, {-1, 0, 4, 3}, {{"A", PixelType::float32}, {"C", PixelType::float32}});
   for (int y = 0; y < 3; ++y)
     for (int x = -1; x < 4; ++x) b.pixel(0, x, y) = a.at(0, x, y);
   b.pixel(0, 2, 1) += 0.25f;

@@ -16,11 +16,13 @@ using namespace test;
 
 // Large enough that no buffer hides a full disk.
 Image large() {
-  Image image = numbered({0, 0, 600, 600}, {0, 0, 600, 600},
-                         {{"B", PixelType::float32}, {"G", PixelType::float32}, {"R", PixelType::float32}});
+  Image image =
+      numbered({0, 0, 600, 600}, {0, 0, 600, 600},
+               {{"B", PixelType::float32}, {"G", PixelType::float32}, {"R", PixelType::float32}});
   std::uint32_t state = 1;
   for (auto& plane : image.planes)
-    for (auto& value : plane) value = static_cast<float>(state = state * 1664525u + 1013904223u) / 4294967296.0f;
+    for (auto& value : plane)
+      value = static_cast<float>(state = state * 1664525u + 1013904223u) / 4294967296.0f;
   return image;
 }
 
@@ -60,8 +62,8 @@ TEST(OutputFile, PermissionsAndLinksAreKept) {
 
 TEST(OutputFile, PlacesThatCannotBeWritten) {
   Folder folder;
-  for (const std::string& path : {folder / "none/a.exr", folder / "", std::string(), folder / std::string("a\0b", 3),
-                                  std::string("/proc/a.exr")}) {
+  for (const std::string& path : {folder / "none/a.exr", folder / "", std::string(),
+                                  folder / std::string("a\0b", 3), std::string("/proc/a.exr")}) {
     const auto file = OutputFile::create(path);
     ASSERT_FALSE(file) << path;
     EXPECT_EQ(file.error().kind, ErrorKind::cannot_write);
@@ -181,7 +183,8 @@ TEST(OutputFile, StandardOutput) {
 
 TEST(Writer, RequestsThatMakeNoSense) {
   Folder folder;
-  Image image = numbered({0, 0, 4, 4}, {0, 0, 4, 4}, {{"R", PixelType::float16}, {"R", PixelType::float16}});
+  Image image =
+      numbered({0, 0, 4, 4}, {0, 0, 4, 4}, {{"R", PixelType::float16}, {"R", PixelType::float16}});
   EXPECT_EQ(write_image(folder / "a.exr", image).error().kind, ErrorKind::bad_request);
   image.spec.channels[1].name = "";
   EXPECT_EQ(write_image(folder / "a.exr", image).error().kind, ErrorKind::bad_request);

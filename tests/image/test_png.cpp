@@ -17,10 +17,12 @@ ReadOptions as_stored() {
 // All 256 steps of sRGB survive decoding to light and encoding again, with and without dithering.
 TEST(Png, EveryStepSurvives) {
   Folder folder;
-  Image image = numbered({0, 0, 256, 2}, {0, 0, 256, 2},
-                         {{"R", PixelType::uint8}, {"G", PixelType::uint8}, {"B", PixelType::uint8}});
+  Image image =
+      numbered({0, 0, 256, 2}, {0, 0, 256, 2},
+               {{"R", PixelType::uint8}, {"G", PixelType::uint8}, {"B", PixelType::uint8}});
   for (auto& plane : image.planes)
-    for (std::size_t i = 0; i < 512; ++i) plane[i] = srgb_decode(static_cast<float>(i % 256) / 255.0f);
+    for (std::size_t i = 0; i < 512; ++i)
+      plane[i] = srgb_decode(static_cast<float>(i % 256) / 255.0f);
   for (const bool dithered : {false, true}) {
     WriteOptions options;
     options.dither = dithered;
@@ -39,8 +41,10 @@ TEST(Png, EveryStepSurvives) {
 TEST(Png, AlphaIsStraightInTheFileAndPremultipliedHere) {
   Folder folder;
   Image image = numbered({0, 0, 1, 1}, {0, 0, 1, 1},
-                         {{"R", PixelType::float16}, {"G", PixelType::float16},
-                          {"B", PixelType::float16}, {"A", PixelType::float16}});
+                         {{"R", PixelType::float16},
+                          {"G", PixelType::float16},
+                          {"B", PixelType::float16},
+                          {"A", PixelType::float16}});
   image.planes = {{0.25f}, {0.5f}, {0.0f}, {0.5f}};
   WriteOptions options;
   options.bits = 16;
@@ -67,7 +71,8 @@ TEST(Png, DataIsNotTransformed) {
   EXPECT_EQ(light->planes[0], (std::vector<float>{51 / 255.0f, 153 / 255.0f}));
 }
 
-// Frame 4 x 3, data window reaching out of it on the left and covering columns 0 and 1 of rows 1 and 2.
+// Frame 4 x 3, data window reaching out of it on the left and covering columns 0 and 1 of rows 1
+// and 2.
 TEST(Png, TheFrameIsWhole) {
   Folder folder;
   Image image = numbered({10, 20, 14, 23}, {8, 21, 12, 23}, {{"heat.Y", PixelType::float32}});
@@ -83,8 +88,10 @@ TEST(Png, TheFrameIsWhole) {
 TEST(Png, ManyOutputsDoNotFit) {
   Folder folder;
   const Image image = numbered({0, 0, 2, 1}, {0, 0, 2, 1},
-                               {{"R", PixelType::float16}, {"G", PixelType::float16},
-                                {"B", PixelType::float16}, {"Z", PixelType::float32}});
+                               {{"R", PixelType::float16},
+                                {"G", PixelType::float16},
+                                {"B", PixelType::float16},
+                                {"Z", PixelType::float32}});
   auto written = write_image(folder / "a.png", image);
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().kind, ErrorKind::unsupported);

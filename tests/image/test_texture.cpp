@@ -15,16 +15,19 @@ using namespace test;
 // A texture of one component from rows, the topmost first.
 Texture of_rows(const std::vector<std::vector<float>>& rows) {
   ImageSpec spec;
-  spec.display = spec.data = {0, 0, static_cast<int>(rows[0].size()), static_cast<int>(rows.size())};
+  spec.display =
+      spec.data = {0, 0, static_cast<int>(rows[0].size()), static_cast<int>(rows.size())};
   spec.channels = {{"a", PixelType::float32}};
   Image image(spec);
   image.planes[0].clear();
-  for (const auto& row : rows) image.planes[0].insert(image.planes[0].end(), row.begin(), row.end());
+  for (const auto& row : rows)
+    image.planes[0].insert(image.planes[0].end(), row.begin(), row.end());
   const std::vector<int> channels = {0};
   return Texture(image, channels);
 }
 
-float at(const Texture& texture, float u, float v, Filter filter, Wrap wrap = Wrap::clamp, float size = 0) {
+float at(const Texture& texture, float u, float v, Filter filter, Wrap wrap = Wrap::clamp,
+         float size = 0) {
   float value = -1;
   texture.look_up(u, v, size, filter, wrap, &value);
   return value;
@@ -73,7 +76,8 @@ TEST(Texture, Cubic) {
     EXPECT_NEAR(at(line, u, 0.5f, Filter::cubic), u * 8 - 0.5f, 2e-6f);
 }
 
-// A board of 0 and 1: two texels wide it is 1/2 everywhere; between one and two texels the level moves linearly.
+// A board of 0 and 1: two texels wide it is 1/2 everywhere; between one and two texels the level
+// moves linearly.
 TEST(Texture, Mipmap) {
   const Texture t = of_rows({{0, 1, 0, 1}, {1, 0, 1, 0}, {0, 1, 0, 1}, {1, 0, 1, 0}});
   const float u = 0.125f, v = 0.875f;
@@ -91,7 +95,8 @@ TEST(Texture, MipmapOfOddSizes) {
   EXPECT_FLOAT_EQ(at(of_rows({{1, 2, 6}}), 0.5f, 0.5f, Filter::mipmap, Wrap::clamp, 1), 3);
   const Texture five = of_rows({{5, 10, 20, 40, 80}});
   EXPECT_FLOAT_EQ(at(five, 0.25f, 0.5f, Filter::mipmap, Wrap::clamp, 0.4f), (5 + 10 + 10) / 2.5f);
-  EXPECT_FLOAT_EQ(at(five, 0.5f, 0.5f, Filter::mipmap, Wrap::clamp, 1e9f), (5 + 10 + 20 + 40 + 80) / 5.0f);
+  EXPECT_FLOAT_EQ(at(five, 0.5f, 0.5f, Filter::mipmap, Wrap::clamp, 1e9f),
+                  (5 + 10 + 20 + 40 + 80) / 5.0f);
 }
 
 TEST(Texture, HardCoordinates) {
@@ -125,8 +130,9 @@ TEST(Texture, DataWindowInsideTheFrame) {
 
 TEST(TextureCall, BatchesOfAnySizeGiveTheSameBits) {
   Folder folder;
-  const Image image = numbered({0, 0, 13, 9}, {0, 0, 13, 9},
-                               {{"R", PixelType::float16}, {"G", PixelType::float16}, {"B", PixelType::float16}});
+  const Image image =
+      numbered({0, 0, 13, 9}, {0, 0, 13, 9},
+               {{"R", PixelType::float16}, {"G", PixelType::float16}, {"B", PixelType::float16}});
   ASSERT_TRUE(write_image(folder / "t.exr", image));
   TextureCache cache;
   EXPECT_EQ(*cache.components(folder / "t.exr", "color"), 3);
@@ -147,9 +153,10 @@ TEST(TextureCall, BatchesOfAnySizeGiveTheSameBits) {
       std::vector<std::vector<float>> out(3, std::vector<float>(count));
       for (std::size_t i = 0; i < count; i += piece) {
         const std::vector<const float*> arguments = {u.data() + i, v.data() + i, w.data() + i};
-        const std::vector<float*> results = {out[0].data() + i, out[1].data() + i, out[2].data() + i};
-        TextureCall::run(&call, static_cast<std::int64_t>(std::min(piece, count - i)), arguments.data(),
-                         results.data());
+        const std::vector<float*> results = {out[0].data() + i, out[1].data() + i,
+                                             out[2].data() + i};
+        TextureCall::run(&call, static_cast<std::int64_t>(std::min(piece, count - i)),
+                         arguments.data(), results.data());
       }
       return out;
     };
@@ -182,7 +189,8 @@ TEST(TextureCache, OneLoadForManyThreads) {
         const auto texture = cache.load(folder / "t.exr", "heat");
         if (texture) place = texture->get();
         float value = 0;
-        if (place != nullptr) place->look_up(0.3f, 0.4f, 0.5f, Filter::mipmap, Wrap::repeat, &value);
+        if (place != nullptr)
+          place->look_up(0.3f, 0.4f, 0.5f, Filter::mipmap, Wrap::repeat, &value);
       });
   }
   for (const Texture* texture : seen) EXPECT_EQ(texture, seen[0]);

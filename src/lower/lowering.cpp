@@ -49,6 +49,11 @@ void Lowering::read_definitions(const Program& program, ModuleScope& scope) {
     if (const auto* function = std::get_if<FunctionStmt>(&statement->node)) {
       if (!scope.functions.emplace(function->name, function).second)
         error("function-twice", function->name_span, "function `" + function->name + "` is defined twice");
+      std::set<std::string> parameters;
+      for (const Parameter& parameter : function->parameters)
+        if (!parameters.insert(parameter.name).second)
+          error("parameter-twice", parameter.span,
+                "`" + function->name + "` has two parameters named `" + parameter.name + "`");
     } else if (const auto* import = std::get_if<ImportStmt>(&statement->node)) {
       ModuleScope* module = load_module(import->module, import->module_span);
       if (!module) continue;

@@ -1,6 +1,7 @@
-// How the executor and the command line do: threads, edit to picture, start-up, the memory of a huge picture.
-// Each result is checked before it is timed; the table gives the median and, behind it, the fastest and slowest run.
-// usage: bench_stream [RUNS] [--large]      --large adds 16384 x 16384 pixels to EXR (minutes, 2 GiB on disk)
+// How the executor and the command line do: threads, edit to picture, start-up, the memory of a
+// huge picture. Each result is checked before it is timed; the table gives the median and, behind
+// it, the fastest and slowest run. usage: bench_stream [RUNS] [--large]      --large adds 16384 x
+// 16384 pixels to EXR (minutes, 2 GiB on disk)
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -43,8 +44,8 @@ Times repeat(int runs, const std::function<double()>& run) {
 
 void row(const char* name, Times times, double unit, const char* unit_name, const char* goal) {
   const double median = times.median();
-  std::printf("%-44s %9.2f %-4s [%.2f .. %.2f]   %s\n", name, median / unit, unit_name, times.seconds.front() / unit,
-              times.seconds.back() / unit, goal);
+  std::printf("%-44s %9.2f %-4s [%.2f .. %.2f]   %s\n", name, median / unit, unit_name,
+              times.seconds.front() / unit, times.seconds.back() / unit, goal);
 }
 
 std::string read_file(const std::filesystem::path& path) {
@@ -78,17 +79,19 @@ double render(const Program& program, int size, int threads, std::vector<float>&
   for (const Knob& knob : program.knobs)
     for (std::size_t c = 0; c < knob.value.size(); ++c)
       for (std::size_t i = 0; i < program.module().inputs.size(); ++i)
-        if (program.module().inputs[i].name == (knob.value.size() == 1 ? knob.name : knob.name + "." + std::to_string(c)))
+        if (program.module().inputs[i].name ==
+            (knob.value.size() == 1 ? knob.name : knob.name + "." + std::to_string(c)))
           state.uniforms[i] = knob.value[c];
   picture.resize(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
   const auto sink = [&](const TileView& tile) {
     for (int y = tile.rect.y0; y < tile.rect.y1; ++y)
-      std::copy_n(tile.planes[0] + std::ptrdiff_t{y - tile.rect.y0} * tile.rect.width(), tile.rect.width(),
-                  picture.begin() + std::ptrdiff_t{y} * size + tile.rect.x0);
+      std::copy_n(tile.planes[0] + std::ptrdiff_t{y - tile.rect.y0} * tile.rect.width(),
+                  tile.rect.width(), picture.begin() + std::ptrdiff_t{y} * size + tile.rect.x0);
   };
   RunStatus status;
-  const RunResult result = execute(program, state, image_plane_source(program.module(), plane, window), sink,
-                                   {.window = window, .threads = threads}, status);
+  const RunResult result =
+      execute(program, state, image_plane_source(program.module(), plane, window), sink,
+              {.window = window, .threads = threads}, status);
   check(result.end == RunEnd::finished, "a picture is finished");
   return result.seconds;
 }
@@ -123,7 +126,8 @@ void bench_edit(const std::string& text, int runs) {
     // Every edit changes a constant of the picture, so nothing can come from a cache.
     const auto program = compile_text(text + "\ncolor = color * " + std::to_string(++edit) + "\n");
     render(*program, 512, 0, picture);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     check(!same_bits(picture, before), "an edit changes the picture");
     before = picture;
     return seconds;
@@ -134,8 +138,10 @@ void bench_edit(const std::string& text, int runs) {
 void bench_start(int runs) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "pse_bench_stream";
   std::filesystem::create_directories(folder);
-  const std::string marble = PSE_GALLERY "/2d/marble/marble.pse", picture = (folder / "marble.png").string();
-  const auto timed = [&](const char* name, const std::vector<std::string>& words, const char* goal) {
+  const std::string marble = PSE_GALLERY "/2d/marble/marble.pse",
+                    picture = (folder / "marble.png").string();
+  const auto timed = [&](const char* name, const std::vector<std::string>& words,
+                         const char* goal) {
     const Times times = repeat(runs, [&] {
       const bench::Measured measured = bench::run_pse(words);
       check(measured.status == 0, name);
@@ -145,9 +151,11 @@ void bench_start(int runs) {
   };
   timed("pse --version", {"--version"}, "<= 50");
   timed("pse check marble.pse", {"check", marble}, "<= 50");
-  timed("pse render marble.pse, 64x64, warm", {"render", marble, "-o", picture, "--res", "64x64"}, "<= 150");
+  timed("pse render marble.pse, 64x64, warm", {"render", marble, "-o", picture, "--res", "64x64"},
+        "<= 150");
   timed("pse render marble.pse, 512x512 PNG, warm", {"render", marble, "-o", picture}, "");
-  timed("pse render marble.pse, 512x512 PNG, cold", {"render", marble, "-o", picture, "--no-cache"}, "");
+  timed("pse render marble.pse, 512x512 PNG, cold", {"render", marble, "-o", picture, "--no-cache"},
+        "");
   std::filesystem::remove_all(folder);
 }
 
@@ -155,9 +163,9 @@ void bench_large() {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "pse_bench_stream";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "large.pse") << "t = Noise(40 * point)\ncolor = [t u v]\nalpha = 1\n";
-  const bench::Measured measured =
-      bench::run_pse({"render", (folder / "large.pse").string(), "-o", (folder / "large.exr").string(), "--res",
-                      "16384x16384", "--layers", "color,alpha"});
+  const bench::Measured measured = bench::run_pse({"render", (folder / "large.pse").string(), "-o",
+                                                   (folder / "large.exr").string(), "--res",
+                                                   "16384x16384", "--layers", "color,alpha"});
   check(measured.status == 0, "the large picture is written");
   check(measured.peak_mebibytes <= 512, "the large picture stays below 512 MiB");
   std::printf("%-44s %9.1f MiB resident in %.0f s   <= 512\n", "16384x16384, four channels, to EXR",

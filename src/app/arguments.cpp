@@ -16,13 +16,15 @@ namespace {
 // The names of a command's options as typed, for suggestions.
 std::vector<std::string> typed_names(const CommandSpec& command) {
   std::vector<std::string> names;
-  for (const OptionSpec& option : command.options) names.push_back(fmt::format("--{}", option.name));
+  for (const OptionSpec& option : command.options)
+    names.push_back(fmt::format("--{}", option.name));
   return names;
 }
 
 [[noreturn]] void unknown_option(const CommandSpec& command, const std::string& word) {
   const std::string name = word.substr(0, word.find('='));
-  const std::string near = name.starts_with("--") ? nearest_name(name, typed_names(command)) : std::string();
+  const std::string near =
+      name.starts_with("--") ? nearest_name(name, typed_names(command)) : std::string();
   throw usage_error(fmt::format("there is no option `{}`", name),
                     near.empty() ? fmt::format("`pse {} --help` lists the options", command.name)
                                  : fmt::format("did you mean `{}`?", near));
@@ -30,7 +32,8 @@ std::vector<std::string> typed_names(const CommandSpec& command) {
 
 // CLI11's names of an option: "-o,--output".
 std::string cli_names(const OptionSpec& option) {
-  return option.letter.empty() ? fmt::format("--{}", option.name) : fmt::format("-{},--{}", option.letter, option.name);
+  return option.letter.empty() ? fmt::format("--{}", option.name)
+                               : fmt::format("-{},--{}", option.letter, option.name);
 }
 
 }  // namespace
@@ -65,18 +68,19 @@ Arguments parse_arguments(const CommandSpec& command, const std::vector<std::str
     if (option.takes == Takes::nothing)
       known[name] = parser.add_flag(cli_names(option));
     else if (option.takes == Takes::optional)
-      known[name] = parser.add_flag(fmt::format("--{}{{{}}}", option.name, option.choices.front()), values[name]);
+      known[name] = parser.add_flag(fmt::format("--{}{{{}}}", option.name, option.choices.front()),
+                                    values[name]);
     else
-      known[name] = parser.add_option(cli_names(option), values[name])
-                        ->allow_extra_args(false)
-                        ->take_all();
+      known[name] =
+          parser.add_option(cli_names(option), values[name])->allow_extra_args(false)->take_all();
   }
 
   // Parse. CLI11 wants the words in reverse order.
   try {
     parser.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& error) {
-    throw usage_error(error.what(), fmt::format("`pse {} --help` explains the options", command.name));
+    throw usage_error(error.what(),
+                      fmt::format("`pse {} --help` explains the options", command.name));
   }
   bool options_end = false;
   for (const std::string& word : parser.remaining()) {
@@ -112,11 +116,14 @@ void check_choices(const Arguments& arguments) {
   for (const OptionSpec& option : arguments.command->options) {
     if (option.choices.empty()) continue;
     for (const OptionValue& given : arguments.all(option.name)) {
-      if (std::find(option.choices.begin(), option.choices.end(), given.text) != option.choices.end()) continue;
-      const std::string near = nearest_name(given.text, {option.choices.begin(), option.choices.end()});
-      throw usage_error(
-          fmt::format("{} takes {}, not `{}`", given.origin, fmt::join(option.choices, ", "), given.text),
-          near.empty() ? "" : fmt::format("did you mean `{}`?", near));
+      if (std::find(option.choices.begin(), option.choices.end(), given.text) !=
+          option.choices.end())
+        continue;
+      const std::string near =
+          nearest_name(given.text, {option.choices.begin(), option.choices.end()});
+      throw usage_error(fmt::format("{} takes {}, not `{}`", given.origin,
+                                    fmt::join(option.choices, ", "), given.text),
+                        near.empty() ? "" : fmt::format("did you mean `{}`?", near));
     }
   }
 }

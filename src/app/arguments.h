@@ -28,7 +28,8 @@ class Arguments {
   std::vector<OptionValue> all(std::string_view name) const;
 };
 
-// Parses what follows the command's name. Throws Failure (usage) for anything the table does not know.
+// Parses what follows the command's name. Throws Failure (usage) for anything the table does not
+// know.
 Arguments parse_arguments(const CommandSpec& command, const std::vector<std::string>& words);
 
 // Adds what the environment and then the configuration files set and the command line did not.

@@ -1,4 +1,5 @@
-// `pse check`: errors and warnings of programs. With images among the arguments, their channels are what may be read.
+// `pse check`: errors and warnings of programs. With images among the arguments, their channels are
+// what may be read.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,7 +37,8 @@ Exit check_command(Session& session) {
   std::vector<std::string> names;
   const std::vector<StreamName> images = image_names(session, names);
   if (names.empty()) throw usage_error("check needs a program", "pse check PROGRAM...");
-  if (std::count(names.begin(), names.end(), "-") > 1) throw usage_error("standard input can be read only once");
+  if (std::count(names.begin(), names.end(), "-") > 1)
+    throw usage_error("standard input can be read only once");
   const WarningPolicy policy = warning_policy(session.arguments);
   const bool json = session.arguments.has("json");
 
@@ -50,12 +52,14 @@ Exit check_command(Session& session) {
     if (json) {
       // Join the files' arrays into one.
       const std::string list = print_json(shown, program.sources);
-      const std::string inner = list.substr(list.find('[') + 1, list.rfind(']') - list.find('[') - 1);
+      const std::string inner =
+          list.substr(list.find('[') + 1, list.rfind(']') - list.find('[') - 1);
       const bool empty = inner.find('{') == std::string::npos;
       if (!empty) all_json += (all_json.empty() ? "" : ",") + inner;
     } else {
       session.console.raw_error(print_text(shown, program.sources, session.console.colour()));
-      if (shown.all().empty()) session.console.note(fmt::format("{}: no errors", program.sources.file(program.file).name));
+      if (shown.all().empty())
+        session.console.note(fmt::format("{}: no errors", program.sources.file(program.file).name));
     }
     const Exit exit = exit_of(shown, policy);
     if (worst == Exit::ok || exit == Exit::program) worst = exit == Exit::ok ? worst : exit;

@@ -29,9 +29,9 @@ std::string today() {
   const std::string near = nearest_name(name, names);
   const bool is_program = name.ends_with(".pse");
   throw usage_error(fmt::format("there is no command `{}`", name),
-                    is_program        ? fmt::format("did you mean `pse render {}`?", name)
-                    : !near.empty()   ? fmt::format("did you mean `{}`?", near)
-                                      : "`pse --help` lists the commands");
+                    is_program      ? fmt::format("did you mean `pse render {}`?", name)
+                    : !near.empty() ? fmt::format("did you mean `{}`?", near)
+                                    : "`pse --help` lists the commands");
 }
 
 const CommandSpec& command_named(const std::string& name) {
@@ -47,7 +47,8 @@ Exit help_command(Session& session) {
   if (names.empty())
     session.console.print(man ? overview_man_page(today()) : overview_help());
   else
-    session.console.print(man ? man_page(command_named(names[0]), today()) : command_help(command_named(names[0])));
+    session.console.print(man ? man_page(command_named(names[0]), today())
+                              : command_help(command_named(names[0])));
   return Exit::ok;
 }
 
@@ -92,7 +93,9 @@ Exit run(const std::vector<std::string>& words, Console& console) {
   }
   if (words[0] == "--version" || words[0] == "-V") return print_version(console), Exit::ok;
   if (words[0] == "--help" || words[0] == "-h") return console.print(overview_help()), Exit::ok;
-  if (words[0].starts_with("-")) throw usage_error(fmt::format("`{}` stands before a command", words[0]), "usage: pse COMMAND ...");
+  if (words[0].starts_with("-"))
+    throw usage_error(fmt::format("`{}` stands before a command", words[0]),
+                      "usage: pse COMMAND ...");
 
   // The command with its options: command line, then environment, then configuration files.
   const CommandSpec& command = command_named(words[0]);

@@ -1,5 +1,5 @@
-// Completion scripts. Each shell gets the commands, their options, the choices of a value, and files of the right kind;
-// a program's knobs are asked from `pse info`.
+// Completion scripts. Each shell gets the commands, their options, the choices of a value, and
+// files of the right kind; a program's knobs are asked from `pse info`.
 #include "app/completion.h"
 
 #include <fmt/format.h>
@@ -18,18 +18,28 @@ std::vector<std::string> names_of_commands() {
   return names;
 }
 
-bool takes_value(const OptionSpec& option) { return option.takes == Takes::one || option.takes == Takes::many; }
+bool takes_value(const OptionSpec& option) {
+  return option.takes == Takes::one || option.takes == Takes::many;
+}
 
 // ---- bash ----
 
 std::string bash_offer(Offer offer) {
   switch (offer) {
-    case Offer::program: return fmt::format("compgen -f -X '!*.@(pse|{})' -- \"$word\"; compgen -d -- \"$word\"", image_patterns);
-    case Offer::image: return fmt::format("compgen -f -X '!*.@({})' -- \"$word\"; compgen -d -- \"$word\"", image_patterns);
-    case Offer::directory: return "compgen -d -- \"$word\"";
-    case Offer::file: return "compgen -f -- \"$word\"";
-    case Offer::knob: return "_pse_knobs";
-    case Offer::nothing: break;
+    case Offer::program:
+      return fmt::format("compgen -f -X '!*.@(pse|{})' -- \"$word\"; compgen -d -- \"$word\"",
+                         image_patterns);
+    case Offer::image:
+      return fmt::format("compgen -f -X '!*.@({})' -- \"$word\"; compgen -d -- \"$word\"",
+                         image_patterns);
+    case Offer::directory:
+      return "compgen -d -- \"$word\"";
+    case Offer::file:
+      return "compgen -f -- \"$word\"";
+    case Offer::knob:
+      return "_pse_knobs";
+    case Offer::nothing:
+      break;
   }
   return ":";
 }
@@ -48,8 +58,10 @@ _pse() {
   local restore; restore=$(shopt -p extglob); shopt -s extglob
   local IFS=$'\n'
 )BASH";
-  out += fmt::format("  if [[ $COMP_CWORD == 1 ]]; then\n    COMPREPLY=($(compgen -W $'{}\\n--version\\n--help' -- \"$word\"))\n    $restore\n    return\n  fi\n",
-                     fmt::join(names_of_commands(), "\\n"));
+  out += fmt::format(
+      "  if [[ $COMP_CWORD == 1 ]]; then\n    COMPREPLY=($(compgen -W $'{}\\n--version\\n--help' "
+      "-- \"$word\"))\n    $restore\n    return\n  fi\n",
+      fmt::join(names_of_commands(), "\\n"));
   out += "  case ${COMP_WORDS[1]} in\n";
   for (const CommandSpec& command : commands()) {
     out += fmt::format("  {})\n    case $before in\n", command.name);
@@ -59,19 +71,24 @@ _pse() {
       if (!option.letter.empty()) names += fmt::format("\\n-{}", option.letter);
       if (!takes_value(option)) continue;
       const std::string letter = option.letter.empty() ? "" : fmt::format("|-{}", option.letter);
-      const std::string reply = option.choices.empty()
-                                    ? bash_offer(option.offer)
-                                    : fmt::format("compgen -W $'{}' -- \"$word\"", fmt::join(option.choices, "\\n"));
-      out += fmt::format("    --{}{}) COMPREPLY=($({})); $restore; return ;;\n", option.name, letter, reply);
+      const std::string reply =
+          option.choices.empty()
+              ? bash_offer(option.offer)
+              : fmt::format("compgen -W $'{}' -- \"$word\"", fmt::join(option.choices, "\\n"));
+      out += fmt::format("    --{}{}) COMPREPLY=($({})); $restore; return ;;\n", option.name,
+                         letter, reply);
     }
     out += "    esac\n";
-    const std::string arguments = command.name == "completion" ? "compgen -W $'bash\\nzsh\\nfish' -- \"$word\""
-                                  : command.name == "help"
-                                      ? fmt::format("compgen -W $'{}' -- \"$word\"", fmt::join(names_of_commands(), "\\n"))
-                                  : command.name == "doc" ? "compgen -W \"$(pse doc --list 2>/dev/null)\" -- \"$word\""
-                                                          : bash_offer(command.offer);
-    out += fmt::format("    if [[ $word == -* ]]; then COMPREPLY=($(compgen -W $'{}' -- \"$word\"))\n", names);
-    out += fmt::format("    else COMPREPLY=($({}{})); fi ;;\n", arguments, command.name == "render" ? "; _pse_knobs" : "");
+    const std::string arguments =
+        command.name == "completion" ? "compgen -W $'bash\\nzsh\\nfish' -- \"$word\""
+        : command.name == "help"
+            ? fmt::format("compgen -W $'{}' -- \"$word\"", fmt::join(names_of_commands(), "\\n"))
+        : command.name == "doc" ? "compgen -W \"$(pse doc --list 2>/dev/null)\" -- \"$word\""
+                                : bash_offer(command.offer);
+    out += fmt::format(
+        "    if [[ $word == -* ]]; then COMPREPLY=($(compgen -W $'{}' -- \"$word\"))\n", names);
+    out += fmt::format("    else COMPREPLY=($({}{})); fi ;;\n", arguments,
+                       command.name == "render" ? "; _pse_knobs" : "");
   }
   out += "  esac\n  $restore\n}\ncomplete -o filenames -o nospace -F _pse pse\n";
   return out;
@@ -95,29 +112,43 @@ std::string zsh_text(std::string_view text) {
 std::string zsh_offer(const OptionSpec& option) {
   if (!option.choices.empty()) return fmt::format("({})", fmt::join(option.choices, " "));
   switch (option.offer) {
-    case Offer::directory: return "_files -/";
-    case Offer::image: return fmt::format("_files -g \"*.({})\"", image_patterns);
-    case Offer::program: case Offer::file: return "_files";
-    default: return " ";
+    case Offer::directory:
+      return "_files -/";
+    case Offer::image:
+      return fmt::format("_files -g \"*.({})\"", image_patterns);
+    case Offer::program:
+    case Offer::file:
+      return "_files";
+    default:
+      return " ";
   }
 }
 
 std::string zsh_script() {
-  std::string out = "#compdef pse\n# zsh completion of pse; made by `pse completion zsh`\n_pse() {\n  local -a names\n  names=(\n";
+  std::string out =
+      "#compdef pse\n# zsh completion of pse; made by `pse completion zsh`\n_pse() {\n  local -a "
+      "names\n  names=(\n";
   for (const CommandSpec& command : commands())
     out += fmt::format("    '{}:{}'\n", command.name, zsh_text(command.summary));
-  out += "  )\n  if (( CURRENT == 2 )); then\n    _describe command names\n    return\n  fi\n  case $words[2] in\n";
+  out +=
+      "  )\n  if (( CURRENT == 2 )); then\n    _describe command names\n    return\n  fi\n  case "
+      "$words[2] in\n";
   for (const CommandSpec& command : commands()) {
     out += fmt::format("  {})\n    shift words; (( CURRENT-- ))\n    _arguments -s", command.name);
     for (const OptionSpec& option : command.options) {
-      const std::string value = takes_value(option) ? fmt::format(":{}:{}", zsh_text(option.value), zsh_offer(option)) : "";
+      const std::string value =
+          takes_value(option) ? fmt::format(":{}:{}", zsh_text(option.value), zsh_offer(option))
+                              : "";
       const std::string many = option.takes == Takes::many ? "*" : "";
-      out += fmt::format(" \\\n      '{}--{}[{}]{}'", many, option.name, zsh_text(option.help), value);
+      out +=
+          fmt::format(" \\\n      '{}--{}[{}]{}'", many, option.name, zsh_text(option.help), value);
       if (!option.letter.empty())
-        out += fmt::format(" \\\n      '{}-{}[{}]{}'", many, option.letter, zsh_text(option.help), value);
+        out += fmt::format(" \\\n      '{}-{}[{}]{}'", many, option.letter, zsh_text(option.help),
+                           value);
     }
     const std::string arguments = command.name == "completion" ? "(bash zsh fish)"
-                                  : command.name == "help" ? fmt::format("({})", fmt::join(names_of_commands(), " "))
+                                  : command.name == "help"
+                                      ? fmt::format("({})", fmt::join(names_of_commands(), " "))
                                   : command.offer == Offer::nothing ? " "
                                                                     : "_files";
     out += fmt::format(" \\\n      '*:argument:{}' ;;\n", arguments);
@@ -140,9 +171,10 @@ std::string fish_script() {
   std::string out = "# fish completion of pse; made by `pse completion fish`\ncomplete -c pse -f\n";
   const std::string all = fmt::format("{}", fmt::join(names_of_commands(), " "));
   for (const CommandSpec& command : commands()) {
-    out += fmt::format("complete -c pse -n 'not __fish_seen_subcommand_from {}' -a {} -d '{}'\n", all, command.name,
-                       fish_text(command.summary));
-    const std::string here = fmt::format("complete -c pse -n '__fish_seen_subcommand_from {}'", command.name);
+    out += fmt::format("complete -c pse -n 'not __fish_seen_subcommand_from {}' -a {} -d '{}'\n",
+                       all, command.name, fish_text(command.summary));
+    const std::string here =
+        fmt::format("complete -c pse -n '__fish_seen_subcommand_from {}'", command.name);
     if (command.offer != Offer::nothing) out += here + " -F\n";
     if (command.name == "completion") out += here + " -a 'bash zsh fish'\n";
     if (command.name == "help") out += fmt::format("{} -a '{}'\n", here, all);
@@ -150,7 +182,8 @@ std::string fish_script() {
     for (const OptionSpec& option : command.options) {
       out += fmt::format("{} -l {}", here, option.name);
       if (!option.letter.empty()) out += fmt::format(" -s {}", option.letter);
-      if (takes_value(option)) out += option.offer == Offer::nothing || !option.choices.empty() ? " -x" : " -r";
+      if (takes_value(option))
+        out += option.offer == Offer::nothing || !option.choices.empty() ? " -x" : " -r";
       if (!option.choices.empty()) out += fmt::format(" -a '{}'", fmt::join(option.choices, " "));
       out += fmt::format(" -d '{}'\n", fish_text(option.help));
     }

@@ -54,15 +54,18 @@ void warn_unknown(const TomlEntry& entry, const std::string& name, Console& cons
 }
 
 // Whether the entry is of use to this command; warns where it is of use to none.
-const OptionSpec* option_of(const TomlEntry& entry, const CommandSpec& command, const std::string& name, Console& console) {
+const OptionSpec* option_of(const TomlEntry& entry, const CommandSpec& command,
+                            const std::string& name, Console& console) {
   if (!entry.table.empty() && find_command(entry.table) == nullptr) {
     console.warning(fmt::format("{}:{}: there is no command `{}`", name, entry.line, entry.table));
     return nullptr;
   }
-  const bool known = entry.table.empty() ? some_command_has(entry.key)
-                                         : find_option(*find_command(entry.table), entry.key) != nullptr;
+  const bool known = entry.table.empty()
+                         ? some_command_has(entry.key)
+                         : find_option(*find_command(entry.table), entry.key) != nullptr;
   if (!known) warn_unknown(entry, name, console);
-  return entry.table.empty() || entry.table == command.name ? find_option(command, entry.key) : nullptr;
+  return entry.table.empty() || entry.table == command.name ? find_option(command, entry.key)
+                                                            : nullptr;
 }
 
 std::string joined(const std::vector<std::string>& elements) {
@@ -80,11 +83,13 @@ Configuration add_configuration(Arguments& arguments, Console& console) {
     const std::string name = file.string();
     std::vector<TomlEntry> entries = read_toml(read_text_file(name), name);
     // A command's own table goes before what holds for all.
-    std::stable_sort(entries.begin(), entries.end(),
-                     [](const TomlEntry& a, const TomlEntry& b) { return !a.table.empty() && b.table.empty(); });
+    std::stable_sort(entries.begin(), entries.end(), [](const TomlEntry& a, const TomlEntry& b) {
+      return !a.table.empty() && b.table.empty();
+    });
     for (const TomlEntry& entry : entries) {
       if (entry.table.empty() && entry.key == "path") {
-        for (const std::string& folder : entry.elements) configuration.path.push_back(file.parent_path() / folder);
+        for (const std::string& folder : entry.elements)
+          configuration.path.push_back(file.parent_path() / folder);
         continue;
       }
       const OptionSpec* option = option_of(entry, *arguments.command, name, console);

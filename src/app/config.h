@@ -1,4 +1,5 @@
-// Configuration files: pse.toml here and in the folders above, then in XDG_CONFIG_HOME, then in /etc. The nearer file wins.
+// Configuration files: pse.toml here and in the folders above, then in XDG_CONFIG_HOME, then in
+// /etc. The nearer file wins.
 #pragma once
 
 #include <filesystem>
@@ -14,8 +15,8 @@ struct Configuration {
   std::vector<std::filesystem::path> path;   // their `path` lists: folders of modules and images
 };
 
-// Gives the command's options the files' values where the command line and the environment said nothing. Keys that no
-// command knows are warned of. Throws Failure (usage) for a broken file.
+// Gives the command's options the files' values where the command line and the environment said
+// nothing. Keys that no command knows are warned of. Throws Failure (usage) for a broken file.
 Configuration add_configuration(Arguments& arguments, Console& console);
 
 }  // namespace pse::app

@@ -13,13 +13,17 @@ namespace {
 bool wants_colour(bool terminal) {
   const char* no_colour = std::getenv("NO_COLOR");
   const char* term = std::getenv("TERM");
-  return terminal && (no_colour == nullptr || *no_colour == 0) && (term == nullptr || std::string_view(term) != "dumb");
+  return terminal && (no_colour == nullptr || *no_colour == 0) &&
+         (term == nullptr || std::string_view(term) != "dumb");
 }
 
 }  // namespace
 
 Console::Console(std::FILE* out, std::FILE* err)
-    : out_(out), err_(err), error_is_terminal_(isatty(fileno(err)) != 0), colour_(wants_colour(error_is_terminal_)) {}
+    : out_(out),
+      err_(err),
+      error_is_terminal_(isatty(fileno(err)) != 0),
+      colour_(wants_colour(error_is_terminal_)) {}
 
 void Console::print(std::string_view text) {
   const std::lock_guard lock(mutex_);
@@ -31,7 +35,8 @@ void Console::say(std::string_view head, std::string_view colour, std::string_vi
   if (status_shown_) std::fputs("\r\033[K", err_);
   status_shown_ = false;
   std::string text;
-  if (!head.empty()) text = colour_ ? fmt::format("\033[{}m{}:\033[0m ", colour, head) : fmt::format("{}: ", head);
+  if (!head.empty())
+    text = colour_ ? fmt::format("\033[{}m{}:\033[0m ", colour, head) : fmt::format("{}: ", head);
   text.append(line);
   text.push_back('\n');
   std::fwrite(text.data(), 1, text.size(), err_);
@@ -72,7 +77,8 @@ std::string human_bytes(double bytes) {
   const char* const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
   std::size_t unit = 0;
   for (; bytes >= 1024 && unit < 4; ++unit) bytes /= 1024;
-  return unit == 0 ? fmt::format("{:.0f} bytes", bytes) : fmt::format("{:.1f} {}", bytes, units[unit]);
+  return unit == 0 ? fmt::format("{:.0f} bytes", bytes)
+                   : fmt::format("{:.1f} {}", bytes, units[unit]);
 }
 
 std::string human_seconds(double seconds) {

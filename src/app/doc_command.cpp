@@ -1,5 +1,6 @@
-// `pse doc`: what builtins, library functions and the plane's variables are. The texts stand where the things are
-// defined: in the table of builtins, above the functions of library/, and below for the variables.
+// `pse doc`: what builtins, library functions and the plane's variables are. The texts stand where
+// the things are defined: in the table of builtins, above the functions of library/, and below for
+// the variables.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -25,8 +26,12 @@ struct Entry {
 // The variables of the image plane; image_plane.h defines them.
 const std::vector<Entry>& variables() {
   static const std::vector<Entry> all = {
-      {"x", "x", "to the right in the picture's plane: -aspect at its left edge, 0 in the middle, aspect at the right", "variable"},
-      {"y", "y", "upward in the picture's plane: -1 at its bottom, 0 in the middle, 1 at the top", "variable"},
+      {"x", "x",
+       "to the right in the picture's plane: -aspect at its left edge, 0 in the middle, aspect at "
+       "the right",
+       "variable"},
+      {"y", "y", "upward in the picture's plane: -1 at its bottom, 0 in the middle, 1 at the top",
+       "variable"},
       {"u", "u", "across the picture: 0 at its left edge, 1 at the right", "variable"},
       {"v", "v", "up the picture: 0 at its bottom, 1 at the top", "variable"},
       {"point", "point", "the sample's place in space: [x y 0], moved by --xform", "variable"},
@@ -39,9 +44,12 @@ const std::vector<Entry>& variables() {
       {"height", "height", "pixels of a column of the picture", "variable"},
       {"aspect", "aspect", "width / height", "variable"},
       {"pixelsize", "pixelsize", "side of a pixel in the picture's plane: 2 / height", "variable"},
-      {"pixel_freq", "pixel_freq", "the highest frequency that pixels can show, in cycles per unit: 0.5 / pixelsize", "variable"},
+      {"pixel_freq", "pixel_freq",
+       "the highest frequency that pixels can show, in cycles per unit: 0.5 / pixelsize",
+       "variable"},
       {"seed", "seed", "the number given with --seed", "variable"},
-      {"begin_frame", "if begin_frame ...", "true where a frame begins: the block is computed once per frame", "variable"}};
+      {"begin_frame", "if begin_frame ...",
+       "true where a frame begins: the block is computed once per frame", "variable"}};
   return all;
 }
 
@@ -69,8 +77,8 @@ void add_functions(std::string_view text, const std::string& home, std::vector<E
     if (line.starts_with(word)) {
       line.remove_prefix(word.size());
       const std::string_view signature = line.substr(0, std::min(line.rfind(')') + 1, line.size()));
-      entries.push_back({std::string(signature.substr(0, signature.find('('))), std::string(signature),
-                         comment_above(text, at), home});
+      entries.push_back({std::string(signature.substr(0, signature.find('('))),
+                         std::string(signature), comment_above(text, at), home});
     }
     at = end + 1;
   }
@@ -80,8 +88,10 @@ std::vector<Entry> all_entries(const Session& session) {
   std::vector<Entry> entries = variables();
   for (const Builtin& builtin : builtins()) {
     std::string text(builtin.doc);
-    if (text.empty() && !builtin.same_as.empty()) text = fmt::format("the same as {}", builtin.same_as);
-    entries.push_back({std::string(builtin.name), fmt::format("{}({})", builtin.name, builtin.parameters), text,
+    if (text.empty() && !builtin.same_as.empty())
+      text = fmt::format("the same as {}", builtin.same_as);
+    entries.push_back({std::string(builtin.name),
+                       fmt::format("{}({})", builtin.name, builtin.parameters), text,
                        fmt::format("builtin, {}", builtin.group)});
   }
   for (const LibraryFile& file : library_files())
@@ -90,7 +100,8 @@ std::vector<Entry> all_entries(const Session& session) {
   for (const std::filesystem::path& folder : session.search_path()) {
     std::error_code error;
     for (const auto& file : std::filesystem::directory_iterator(folder, error))
-      if (file.path().extension() == ".pse") add_functions(read_text_file(file.path().string()), file.path().string(), entries);
+      if (file.path().extension() == ".pse")
+        add_functions(read_text_file(file.path().string()), file.path().string(), entries);
   }
   return entries;
 }
@@ -99,7 +110,8 @@ std::string overview(const std::vector<Entry>& entries) {
   std::map<std::string, std::vector<std::string>> homes;
   for (const Entry& entry : entries) homes[entry.home].push_back(entry.name);
   std::string out;
-  for (const auto& [home, names] : homes) out += fmt::format("{}\n{}\n", home, wrap(fmt::format("{}", fmt::join(names, " ")), 2));
+  for (const auto& [home, names] : homes)
+    out += fmt::format("{}\n{}\n", home, wrap(fmt::format("{}", fmt::join(names, " ")), 2));
   return out + "`pse doc NAME` explains one of them.\n";
 }
 
@@ -114,20 +126,23 @@ Exit doc_command(Session& session) {
   std::vector<Entry> chosen;
   for (const std::string& name : names) {
     const std::size_t before = chosen.size();
-    std::copy_if(entries.begin(), entries.end(), std::back_inserter(chosen), [&](const Entry& e) { return e.name == name; });
+    std::copy_if(entries.begin(), entries.end(), std::back_inserter(chosen),
+                 [&](const Entry& e) { return e.name == name; });
     if (chosen.size() > before) continue;
     std::vector<std::string> known;
     for (const Entry& entry : entries) known.push_back(entry.name);
     const std::string near = nearest_name(name, known);
-    throw usage_error(fmt::format("there is no function or variable `{}`", name),
-                      near.empty() ? "`pse doc --list` lists them" : fmt::format("did you mean `{}`?", near));
+    throw usage_error(
+        fmt::format("there is no function or variable `{}`", name),
+        near.empty() ? "`pse doc --list` lists them" : fmt::format("did you mean `{}`?", near));
   }
   const std::vector<Entry>& shown = names.empty() ? entries : chosen;
 
   if (json) {
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
     for (const Entry& e : shown)
-      all.push_back({{"name", e.name}, {"signature", e.signature}, {"text", e.text}, {"home", e.home}});
+      all.push_back(
+          {{"name", e.name}, {"signature", e.signature}, {"text", e.text}, {"home", e.home}});
     session.console.print(all.dump(2) + "\n");
   } else if (session.arguments.has("list")) {
     for (const Entry& e : shown) session.console.print(e.name + "\n");

@@ -6,8 +6,8 @@
 
 namespace pse::app {
 
-std::string emit_stage(const std::string& stage, ProgramFile& program, const LowerHost& host, const CompileOptions& options,
-                       Diagnostics& diagnostics) {
+std::string emit_stage(const std::string& stage, ProgramFile& program, const LowerHost& host,
+                       const CompileOptions& options, Diagnostics& diagnostics) {
   // Text and tree.
   if (stage == "tokens") return lang::print_tokens(program.sources, program.file);
   const lang::Program tree = lang::parse(program.sources, program.file, diagnostics);
@@ -18,11 +18,13 @@ std::string emit_stage(const std::string& stage, ProgramFile& program, const Low
   Lowered lowered = lower_program(program.sources, tree, host, options.lower, diagnostics);
   if (diagnostics.has_errors()) return {};
   if (stage == "ir") return ir::print(lowered.module);
-  const passes::SplitModule split = passes::run_pipeline(std::move(lowered.module), {.optimize = options.optimize});
+  const passes::SplitModule split =
+      passes::run_pipeline(std::move(lowered.module), {.optimize = options.optimize});
   if (stage == "opt") return ir::print(split.module);
 
   // What LLVM makes of it.
-  const auto text = emit_listing(split, options.codegen, stage == "llvm" ? Listing::llvm : Listing::assembly);
+  const auto text =
+      emit_listing(split, options.codegen, stage == "llvm" ? Listing::llvm : Listing::assembly);
   if (!text) throw Failure(Exit::running, text.error());
   return *text;
 }

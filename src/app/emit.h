@@ -8,8 +8,9 @@
 
 namespace pse::app {
 
-// The text of a stage; throws Failure. Errors of the program go to `diagnostics`, the text is then empty.
-std::string emit_stage(const std::string& stage, ProgramFile& program, const LowerHost& host, const CompileOptions& options,
-                       Diagnostics& diagnostics);
+// The text of a stage; throws Failure. Errors of the program go to `diagnostics`, the text is then
+// empty.
+std::string emit_stage(const std::string& stage, ProgramFile& program, const LowerHost& host,
+                       const CompileOptions& options, Diagnostics& diagnostics);
 
 }  // namespace pse::app

@@ -1,4 +1,5 @@
-// How a command ends: the exit statuses that users rely on, and the exception that carries one to the top.
+// How a command ends: the exit statuses that users rely on, and the exception that carries one to
+// the top.
 #pragma once
 
 #include <stdexcept>
@@ -8,12 +9,12 @@ namespace pse::app {
 
 enum class Exit : int {
   ok = 0,
-  running = 1,      // failed while running
-  usage = 2,        // wrong arguments
-  program = 3,      // the program has errors
-  input = 4,        // an input could not be read
-  output = 5,       // an output could not be written
-  strict = 6,       // a strict check failed
+  running = 1,        // failed while running
+  usage = 2,          // wrong arguments
+  program = 3,        // the program has errors
+  input = 4,          // an input could not be read
+  output = 5,         // an output could not be written
+  strict = 6,         // a strict check failed
   interrupted = 130,  // SIGINT
   terminated = 143,   // SIGTERM
 };

@@ -21,8 +21,10 @@ void rewrite(const std::string& path, const std::string& text) {
 Exit fmt_command(Session& session) {
   const auto& names = session.arguments.positionals;
   const bool check = session.arguments.has("check"), in_place = session.arguments.has("in-place");
-  if (names.empty()) throw usage_error("fmt needs a program, or `-` for standard input", "pse fmt PROGRAM...");
-  if (check && in_place) throw usage_error("--check changes nothing, so it cannot go with --in-place");
+  if (names.empty())
+    throw usage_error("fmt needs a program, or `-` for standard input", "pse fmt PROGRAM...");
+  if (check && in_place)
+    throw usage_error("--check changes nothing, so it cannot go with --in-place");
 
   Exit worst = Exit::ok;
   for (const std::string& name : names) {
@@ -38,7 +40,8 @@ Exit fmt_command(Session& session) {
     const std::string text = lang::format(tree, program.sources);
     const bool same = text == program.text();
     if (check && !same) {
-      session.console.note(fmt::format("{}: not formatted", program.sources.file(program.file).name));
+      session.console.note(
+          fmt::format("{}: not formatted", program.sources.file(program.file).name));
       if (worst == Exit::ok) worst = Exit::strict;
     } else if (in_place && program.path != "-") {
       if (same) continue;

@@ -1,6 +1,8 @@
-// The files of one frame while it is computed: a sink of tiles, and snapshots of what is there so far.
+// The files of one frame while it is computed: a sink of tiles, and snapshots of what is there so
+// far.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -16,17 +18,24 @@ struct NotFiniteChannel {
   image::NotFinite found;
 };
 
+// Opens the writer of one file: a picture of its own, or the next frame of a film.
+using OpenWriter = std::function<image::Result<std::unique_ptr<image::ImageWriter>>(
+    std::size_t file, const std::string& name, const image::ImageSpec& spec)>;
+
 class FrameWriter {
  public:
-  // `display` is the picture's place in file coordinates and `window` the part of it that is computed, from its top
-  // left. recipes: one per file, to be stored in it; or none. Throws Failure (output).
-  FrameWriter(const std::vector<PlannedFile>& files, int frame, const image::ImageSpec& common, const Rect& window,
-              image::NanPolicy nan, const std::vector<std::string>& recipes);
+  // `display` is the picture's place in file coordinates and `window` the part of it that is
+  // computed, from its top left. recipes: one per file, to be stored in it; or none. Throws Failure
+  // (output).
+  FrameWriter(const std::vector<PlannedFile>& files, int frame, const image::ImageSpec& common,
+              const Rect& window, image::NanPolicy nan, const std::vector<std::string>& recipes,
+              const OpenWriter& open);
 
-  // Takes tiles in order, one at a time. Throws Failure: `output`, or `strict` for NaN under --nan error.
+  // Takes tiles in order, one at a time. Throws Failure: `output`, or `strict` for NaN under --nan
+  // error.
   void add(const TileView& tile);
-  // Writes what has come so far beside each target, as NAME.snapshot.EXT; may be called while tiles come. Returns the
-  // names; none for pictures too large to be kept in memory.
+  // Writes what has come so far beside each target, as NAME.snapshot.EXT; may be called while tiles
+  // come. Returns the names; none for pictures too large to be kept in memory.
   std::vector<std::string> write_snapshots();
   // Puts the files in their places and returns their names. Throws as add().
   std::vector<std::string> close();

@@ -14,7 +14,7 @@ using namespace lang;
 
 class Walk {
  public:
-  std::set<std::string> bound;                           // names that are set, or are functions or parameters
+  std::set<std::string> bound;  // names that are set, or are functions or parameters
   std::map<std::string, std::set<std::string>> members;  // name -> members read of it
 
   void block(const Block& statements) {
@@ -40,7 +40,9 @@ class Walk {
   void visit(const RangeExpr& e) { expression(e.first), expression(e.last), expression(e.step); }
   void visit(const UnaryExpr& e) { expression(e.operand); }
   void visit(const BinaryExpr& e) { expression(e.left), expression(e.right); }
-  void visit(const ConditionalExpr& e) { expression(e.condition), expression(e.if_true), expression(e.if_false); }
+  void visit(const ConditionalExpr& e) {
+    expression(e.condition), expression(e.if_true), expression(e.if_false);
+  }
   void visit(const IndexExpr& e) { expression(e.base), expressions(e.indices); }
   void visit(const CallExpr& e) {
     expression(e.callee);
@@ -84,7 +86,8 @@ class Walk {
   void target(const ExprPtr& expr) {
     if (!expr) return;
     if (const auto* name = std::get_if<NameExpr>(&expr->node)) bound.insert(name->name);
-    if (const auto* index = std::get_if<IndexExpr>(&expr->node)) target(index->base), expressions(index->indices);
+    if (const auto* index = std::get_if<IndexExpr>(&expr->node))
+      target(index->base), expressions(index->indices);
     if (const auto* member = std::get_if<MemberExpr>(&expr->node)) target(member->base);
   }
 };
@@ -103,7 +106,8 @@ std::vector<StreamName> image_names_read(const lang::Program& program) {
   for (const StreamName& name : names) walk.bound.insert(name.name);
   for (const auto& [name, members] : walk.members) {
     if (walk.bound.contains(name)) continue;
-    for (const std::string& member : members) names.push_back({name + "." + member, likely_components(member)});
+    for (const std::string& member : members)
+      names.push_back({name + "." + member, likely_components(member)});
   }
   return names;
 }

@@ -1,4 +1,5 @@
-// Which channels of images a program seems to read: for `check`, `info` and --help, where no image is at hand.
+// Which channels of images a program seems to read: for `check`, `info` and --help, where no image
+// is at hand.
 #pragma once
 
 #include <vector>
@@ -8,8 +9,9 @@
 
 namespace pse::app {
 
-// `color`, `alpha` and `Z`, and every `name.channel` whose `name` the program sets nowhere. A channel's components follow
-// from its name: `alpha`, `Z` and other capitals are numbers, the rest vectors of three.
+// `color`, `alpha` and `Z`, and every `name.channel` whose `name` the program sets nowhere. A
+// channel's components follow from its name: `alpha`, `Z` and other capitals are numbers, the rest
+// vectors of three.
 std::vector<StreamName> image_names_read(const lang::Program& program);
 
 }  // namespace pse::app

@@ -43,14 +43,18 @@ std::string option_heading(const OptionSpec& option) {
 }
 
 std::string overview_help() {
-  std::string out = fmt::format("pse {}: a pixel stream editor\n\nusage: pse COMMAND ...\n\n", version);
-  for (const CommandSpec& command : commands()) out += fmt::format("  {:<12}{}\n", command.name, command.summary);
-  out += "\n`pse COMMAND --help` explains a command, `pse render PROGRAM --help` a program's knobs.\n";
+  std::string out =
+      fmt::format("pse {}: a pixel stream editor\n\nusage: pse COMMAND ...\n\n", version);
+  for (const CommandSpec& command : commands())
+    out += fmt::format("  {:<12}{}\n", command.name, command.summary);
+  out +=
+      "\n`pse COMMAND --help` explains a command, `pse render PROGRAM --help` a program's knobs.\n";
   return out;
 }
 
 std::string command_help(const CommandSpec& command) {
-  std::string out = fmt::format("pse {}: {}\n\nusage: pse {} {}\n\n", command.name, command.summary, command.name, command.usage);
+  std::string out = fmt::format("pse {}: {}\n\nusage: pse {} {}\n\n", command.name, command.summary,
+                                command.name, command.usage);
   out += wrap(command.description, 0);
   out += "\noptions:\n";
   constexpr std::size_t column = 30;
@@ -68,7 +72,8 @@ std::string command_help(const CommandSpec& command) {
   }
   if (!command.examples.empty()) out += "\nexamples:\n";
   for (const auto& [line, meaning] : command.examples)
-    out += meaning.empty() ? fmt::format("  {}\n", line) : fmt::format("  {}\n      {}\n", line, meaning);
+    out += meaning.empty() ? fmt::format("  {}\n", line)
+                           : fmt::format("  {}\n      {}\n", line, meaning);
   return out;
 }
 

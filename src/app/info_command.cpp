@@ -30,24 +30,31 @@ ProgramInfo examine_program(const std::string& name, Session& session) {
   Diagnostics diagnostics;
   Lowered lowered = survey(program, module_host(program.path, session), diagnostics);
   if (diagnostics.has_errors()) report(diagnostics, program.sources, session);
-  ProgramInfo info{program.sources.file(program.file).name, std::move(lowered.knobs), std::move(lowered.outputs),
-                   std::move(lowered.reads), {}};
+  ProgramInfo info{program.sources.file(program.file).name,
+                   std::move(lowered.knobs),
+                   std::move(lowered.outputs),
+                   std::move(lowered.reads),
+                   {}};
   info.operations = count_operations(passes::run_pipeline(std::move(lowered.module)));
   return info;
 }
 
 std::string output_text(const ProgramOutput& output) {
-  return output.components == 1 ? output.name : fmt::format("{}[{}]", output.name, output.components);
+  return output.components == 1 ? output.name
+                                : fmt::format("{}[{}]", output.name, output.components);
 }
 
 std::string program_text(const ProgramInfo& info) {
   std::vector<std::string> sets;
   for (const ProgramOutput& output : info.outputs) sets.push_back(output_text(output));
   std::string out = fmt::format("{}: program\n", info.name);
-  out += fmt::format("  reads       {}\n", info.reads.empty() ? "nothing" : fmt::format("{}", fmt::join(info.reads, " ")));
-  out += fmt::format("  sets        {}\n", sets.empty() ? "nothing" : fmt::format("{}", fmt::join(sets, " ")));
-  out += fmt::format("  operations  {} constant, {} per frame, {} per sample\n", info.operations.constant,
-                     info.operations.frame, info.operations.sample);
+  out +=
+      fmt::format("  reads       {}\n",
+                  info.reads.empty() ? "nothing" : fmt::format("{}", fmt::join(info.reads, " ")));
+  out += fmt::format("  sets        {}\n",
+                     sets.empty() ? "nothing" : fmt::format("{}", fmt::join(sets, " ")));
+  out += fmt::format("  operations  {} constant, {} per frame, {} per sample\n",
+                     info.operations.constant, info.operations.frame, info.operations.sample);
   return out + knob_help(info.knobs);
 }
 
@@ -65,17 +72,26 @@ Json program_json(const ProgramInfo& info) {
       entry["value"] = knob.value;
     if (knob.min) entry["min"] = *knob.min;
     if (knob.max) entry["max"] = *knob.max;
-    for (const auto& [key, text] : {std::pair{"label", &knob.label}, {"help", &knob.help}, {"widget", &knob.widget},
-                                    {"units", &knob.units}, {"page", &knob.page}})
+    for (const auto& [key, text] : {std::pair{"label", &knob.label},
+                                    {"help", &knob.help},
+                                    {"widget", &knob.widget},
+                                    {"units", &knob.units},
+                                    {"page", &knob.page}})
       if (!text->empty()) entry[key] = *text;
     if (!knob.options.empty()) entry["options"] = knob.options;
     knobs.push_back(std::move(entry));
   }
   for (const ProgramOutput& output : info.outputs)
     outputs.push_back({{"name", output.name}, {"components", output.components}});
-  return {{"file", info.name}, {"kind", "program"}, {"reads", info.reads}, {"sets", outputs}, {"knobs", knobs},
+  return {{"file", info.name},
+          {"kind", "program"},
+          {"reads", info.reads},
+          {"sets", outputs},
+          {"knobs", knobs},
           {"operations",
-           {{"constant", info.operations.constant}, {"frame", info.operations.frame}, {"sample", info.operations.sample}}}};
+           {{"constant", info.operations.constant},
+            {"frame", info.operations.frame},
+            {"sample", info.operations.sample}}}};
 }
 
 image::ImageSpec examine_image(const std::string& file) {
@@ -103,7 +119,10 @@ std::string image_text(const std::string& name, const image::ImageSpec& spec) {
 }
 
 Json image_json(const std::string& name, const image::ImageSpec& spec) {
-  Json json = {{"file", name}, {"kind", "image"}, {"width", spec.display.width()}, {"height", spec.display.height()}};
+  Json json = {{"file", name},
+               {"kind", "image"},
+               {"width", spec.display.width()},
+               {"height", spec.display.height()}};
   for (const auto& [heading, text] : image::describe(spec)) json["about"][heading] = text;
   for (const image::Channel& channel : spec.channels)
     json["channels"].push_back({{"name", channel.name}, {"type", image::name_of(channel.type)}});
@@ -125,10 +144,12 @@ Exit info_command(Session& session) {
     } else {
       const std::string file = session.find_file(name);
       const image::ImageSpec spec = examine_image(file);
-      as_json ? all.push_back(image_json(file, spec)) : session.console.print(image_text(file, spec));
+      as_json ? all.push_back(image_json(file, spec))
+              : session.console.print(image_text(file, spec));
     }
   }
-  if (as_json) session.console.print(all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  if (as_json)
+    session.console.print(all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   return Exit::ok;
 }
 

@@ -55,7 +55,8 @@ InputImages::InputImages(const RenderOptions& options, const Session& session) {
 }
 
 bool InputImages::vary() const {
-  return std::any_of(images_.begin(), images_.end(), [](const Open& image) { return image::is_pattern(image.pattern); });
+  return std::any_of(images_.begin(), images_.end(),
+                     [](const Open& image) { return image::is_pattern(image.pattern); });
 }
 
 void InputImages::open(int frame) {
@@ -70,10 +71,12 @@ void InputImages::open(int frame) {
     image.layers = image::layers_of(image.reader->spec());
   }
   for (const Open& image : images_) {
-    const image::Window &first = images_.front().reader->spec().display, &here = image.reader->spec().display;
+    const image::Window &first = images_.front().reader->spec().display,
+                        &here = image.reader->spec().display;
     if (first.width() != here.width() || first.height() != here.height())
-      throw Failure(Exit::input, fmt::format("the images differ in size: {} is {}x{}, {} is {}x{}", images_.front().file,
-                                             first.width(), first.height(), image.file, here.width(), here.height()));
+      throw Failure(Exit::input, fmt::format("the images differ in size: {} is {}x{}, {} is {}x{}",
+                                             images_.front().file, first.width(), first.height(),
+                                             image.file, here.width(), here.height()));
   }
 }
 
@@ -81,7 +84,8 @@ std::vector<StreamName> InputImages::names() const {
   std::vector<StreamName> names;
   for (const Open& image : images_)
     for (const image::Layer& layer : image.layers)
-      names.push_back({stream_prefix(image.name) + layer.name, layer.components(), ir::Rate::sample});
+      names.push_back(
+          {stream_prefix(image.name) + layer.name, layer.components(), ir::Rate::sample});
   return names;
 }
 
@@ -98,7 +102,8 @@ std::optional<image::Window> InputImages::data() const {
 
 std::vector<std::pair<std::string, std::string>> InputImages::identities() const {
   std::vector<std::pair<std::string, std::string>> all;
-  for (const Open& image : images_) all.emplace_back(image.name + "=" + image.file, file_identity(image.file));
+  for (const Open& image : images_)
+    all.emplace_back(image.name + "=" + image.file, file_identity(image.file));
   return all;
 }
 
@@ -117,11 +122,15 @@ TileSource InputImages::load(const ir::Module& module) {
     for (const image::Layer& layer : image.layers) {
       const std::string name = stream_prefix(image.name) + layer.name;
       for (int c = 0; c < layer.components(); ++c) {
-        const std::string component = layer.components() == 1 ? name : fmt::format("{}.{}", name, c);
+        const std::string component =
+            layer.components() == 1 ? name : fmt::format("{}.{}", name, c);
         for (std::size_t i = 0; i < module.inputs.size(); ++i) {
-          if (module.inputs[i].rate != ir::Rate::sample || module.inputs[i].name != component) continue;
+          if (module.inputs[i].rate != ir::Rate::sample || module.inputs[i].name != component)
+            continue;
           inputs.push_back(i);
-          channels.push_back(spec.channels[static_cast<std::size_t>(layer.channels[static_cast<std::size_t>(c)])].name);
+          channels.push_back(
+              spec.channels[static_cast<std::size_t>(layer.channels[static_cast<std::size_t>(c)])]
+                  .name);
         }
       }
     }
@@ -133,7 +142,8 @@ TileSource InputImages::load(const ir::Module& module) {
     const auto shared = std::make_shared<const image::Image>(std::move(*picture));
     for (std::size_t k = 0; k < channels.size(); ++k) {
       const int plane = shared->spec.find(channels[k]);
-      if (plane < 0) throw Failure(Exit::input, fmt::format("{} has no channel {}", image.file, channels[k]));
+      if (plane < 0)
+        throw Failure(Exit::input, fmt::format("{} has no channel {}", image.file, channels[k]));
       loaded->feeds.push_back({inputs[k], shared, static_cast<std::size_t>(plane)});
       loaded->displays.push_back(spec.display);
     }

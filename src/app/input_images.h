@@ -1,4 +1,5 @@
-// The images given on the command line as a source of samples: each layer is a named value at every pixel.
+// The images given on the command line as a source of samples: each layer is a named value at every
+// pixel.
 #pragma once
 
 #include <memory>

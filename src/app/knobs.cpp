@@ -36,18 +36,21 @@ void add_environment_settings(std::vector<KnobSetting>& settings) {
 }
 
 // "Name value" or "Name = value" lines, # comments.
-void add_plain_lines(const std::string& file, const std::string& text, std::vector<KnobSetting>& settings) {
+void add_plain_lines(const std::string& file, const std::string& text,
+                     std::vector<KnobSetting>& settings) {
   int number = 0;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     std::string_view line = std::string_view(text).substr(at, end - at);
     at = end + 1;
     ++number;
-    if (const auto comment = line.find('#'); comment != std::string_view::npos) line = line.substr(0, comment);
+    if (const auto comment = line.find('#'); comment != std::string_view::npos)
+      line = line.substr(0, comment);
     const auto trim = [](std::string_view part) {
       const auto first = part.find_first_not_of(" \t\r");
-      return first == std::string_view::npos ? std::string_view()
-                                             : part.substr(first, part.find_last_not_of(" \t\r") - first + 1);
+      return first == std::string_view::npos
+                 ? std::string_view()
+                 : part.substr(first, part.find_last_not_of(" \t\r") - first + 1);
     };
     line = trim(line);
     if (line.empty()) continue;
@@ -56,7 +59,8 @@ void add_plain_lines(const std::string& file, const std::string& text, std::vect
     if (value.starts_with('=')) value = trim(value.substr(1));
     if (value.empty() || name_end == 0)
       throw usage_error(fmt::format("{}:{}: a line is `Name value`, not `{}`", file, number, line));
-    settings.push_back({std::string(line.substr(0, name_end)), std::string(value), fmt::format("{}:{}", file, number)});
+    settings.push_back({std::string(line.substr(0, name_end)), std::string(value),
+                        fmt::format("{}:{}", file, number)});
   }
 }
 
@@ -66,34 +70,42 @@ void add_file_settings(const std::string& file, std::vector<KnobSetting>& settin
   for (const TomlEntry& entry : read_toml(text, file)) {
     const std::string origin = fmt::format("{}:{}", file, entry.line);
     if (!entry.table.empty() && entry.table != "knobs") continue;
-    const std::string value = entry.is_array ? fmt::format("[{}]", fmt::join(entry.elements, ", ")) : entry.elements.front();
+    const std::string value = entry.is_array ? fmt::format("[{}]", fmt::join(entry.elements, ", "))
+                                             : entry.elements.front();
     settings.push_back({entry.key, value, origin});
   }
 }
 
-// The value of a text that should be numbers: an expression of the language, or plain numbers behind commas.
+// The value of a text that should be numbers: an expression of the language, or plain numbers
+// behind commas.
 std::optional<std::vector<float>> numbers_of(const std::string& text) {
   SourceMap sources;
   Diagnostics diagnostics;
-  const std::string wrapped = text.find(',') != std::string::npos && !text.starts_with('[') ? "[" + text + "]" : text;
-  const lang::ExprPtr expr = lang::parse_expression(sources, sources.add("<value>", wrapped), diagnostics);
+  const std::string wrapped =
+      text.find(',') != std::string::npos && !text.starts_with('[') ? "[" + text + "]" : text;
+  const lang::ExprPtr expr =
+      lang::parse_expression(sources, sources.add("<value>", wrapped), diagnostics);
   if (!expr || diagnostics.has_errors()) return std::nullopt;
   const auto value = lower::constant_value(*expr);
   if (!value || value->is_text) return std::nullopt;
   return value->numbers;
 }
 
-std::string where(const KnobSetting& setting) { return setting.origin.empty() ? "PSE_" + setting.name : setting.origin; }
+std::string where(const KnobSetting& setting) {
+  return setting.origin.empty() ? "PSE_" + setting.name : setting.origin;
+}
 
 std::string shape(const Knob& knob) {
   if (knob.is_text()) return "a text";
   if (knob.is_boolean) return "true or false";
-  return knob.value.size() == 1 ? "a number" : fmt::format("a vector of {} numbers", knob.value.size());
+  return knob.value.size() == 1 ? "a number"
+                                : fmt::format("a vector of {} numbers", knob.value.size());
 }
 
 // "knob `Scale` takes a number, not `red` (--define)"
 [[noreturn]] void refuse(const Knob& knob, const KnobSetting& setting) {
-  throw usage_error(fmt::format("{}: knob `{}` takes {}, not `{}`", where(setting), knob.name, shape(knob), setting.text),
+  throw usage_error(fmt::format("{}: knob `{}` takes {}, not `{}`", where(setting), knob.name,
+                                shape(knob), setting.text),
                     fmt::format("for example: {}={}", knob.name, knob_text(knob)));
 }
 
@@ -101,8 +113,9 @@ void check_range(const Knob& knob, const KnobSetting& setting, Console& console)
   for (const float value : knob.value) {
     const bool below = knob.min && value < *knob.min, above = knob.max && value > *knob.max;
     if (below || above)
-      console.warning(fmt::format("{}: {} = {} is {} its {} of {}", where(setting), knob.name, value,
-                                  below ? "below" : "above", below ? "minimum" : "maximum", below ? *knob.min : *knob.max));
+      console.warning(fmt::format("{}: {} = {} is {} its {} of {}", where(setting), knob.name,
+                                  value, below ? "below" : "above", below ? "minimum" : "maximum",
+                                  below ? *knob.min : *knob.max));
   }
 }
 
@@ -118,12 +131,14 @@ void apply(Knob& knob, const KnobSetting& setting, Console& console) {
   if (knob.is_boolean) {
     const std::string& text = setting.text;
     const bool yes = text == "true" || text == "1" || text == "yes" || text == "on";
-    if (!yes && text != "false" && text != "0" && text != "no" && text != "off") refuse(knob, setting);
+    if (!yes && text != "false" && text != "0" && text != "no" && text != "off")
+      refuse(knob, setting);
     knob.value = {yes ? 1.0f : 0.0f};
     return;
   }
   const auto numbers = numbers_of(setting.text);
-  if (!numbers || (numbers->size() != knob.value.size() && numbers->size() != 1)) refuse(knob, setting);
+  if (!numbers || (numbers->size() != knob.value.size() && numbers->size() != 1))
+    refuse(knob, setting);
   // One number for a vector holds for all of its components.
   if (numbers->size() == 1)
     std::fill(knob.value.begin(), knob.value.end(), numbers->front());
@@ -134,10 +149,12 @@ void apply(Knob& knob, const KnobSetting& setting, Console& console) {
 
 }  // namespace
 
-std::vector<KnobSetting> knob_settings(const Session& session, const std::vector<std::string>& words) {
+std::vector<KnobSetting> knob_settings(const Session& session,
+                                       const std::vector<std::string>& words) {
   std::vector<KnobSetting> settings;
   add_environment_settings(settings);
-  for (const OptionValue& file : session.arguments.all("params")) add_file_settings(session.find_file(file.text), settings);
+  for (const OptionValue& file : session.arguments.all("params"))
+    add_file_settings(session.find_file(file.text), settings);
 
   const auto add_word = [&](const std::string& word, const std::string& origin) {
     const std::size_t equals = word.find('=');
@@ -150,19 +167,22 @@ std::vector<KnobSetting> knob_settings(const Session& session, const std::vector
   return settings;
 }
 
-std::vector<Knob> apply_settings(std::vector<Knob> knobs, const std::vector<KnobSetting>& settings, Console& console) {
+std::vector<Knob> apply_settings(std::vector<Knob> knobs, const std::vector<KnobSetting>& settings,
+                                 Console& console) {
   for (const KnobSetting& setting : settings) {
-    const auto knob = std::find_if(knobs.begin(), knobs.end(), [&](const Knob& k) { return k.name == setting.name; });
+    const auto knob = std::find_if(knobs.begin(), knobs.end(),
+                                   [&](const Knob& k) { return k.name == setting.name; });
     if (knob != knobs.end()) {
       apply(*knob, setting, console);
     } else if (!setting.origin.empty()) {
       std::vector<std::string> names;
       for (const Knob& known : knobs) names.push_back(known.name);
       const std::string near = nearest_name(setting.name, names);
-      throw usage_error(fmt::format("{}: the program has no knob `{}`", where(setting), setting.name),
-                        !near.empty()    ? fmt::format("did you mean `{}`?", near)
-                        : names.empty()  ? "it has no knobs"
-                                         : fmt::format("its knobs: {}", fmt::join(names, ", ")));
+      throw usage_error(
+          fmt::format("{}: the program has no knob `{}`", where(setting), setting.name),
+          !near.empty()   ? fmt::format("did you mean `{}`?", near)
+          : names.empty() ? "it has no knobs"
+                          : fmt::format("its knobs: {}", fmt::join(names, ", ")));
     }
   }
   return knobs;
@@ -194,7 +214,8 @@ std::string knob_help(const std::vector<Knob>& knobs) {
     if (!knob.options.empty()) notes.push_back(fmt::format("{}", fmt::join(knob.options, " | ")));
     if (!knob.units.empty()) notes.push_back("in " + knob.units);
     std::string text = knob.help.empty() ? knob.label : knob.help;
-    if (!notes.empty()) text += fmt::format("{}({})", text.empty() ? "" : " ", fmt::join(notes, ", "));
+    if (!notes.empty())
+      text += fmt::format("{}({})", text.empty() ? "" : " ", fmt::join(notes, ", "));
     std::string lines = wrap(text.empty() ? "." : text, width + 6);
     const std::string head = "  " + heads[i];
     if (head.size() + 2 <= width + 6)

@@ -16,11 +16,14 @@ struct KnobSetting {
 };
 
 // All settings in rising order of precedence. `words` are the Name=VALUE arguments.
-std::vector<KnobSetting> knob_settings(const Session& session, const std::vector<std::string>& words);
+std::vector<KnobSetting> knob_settings(const Session& session,
+                                       const std::vector<std::string>& words);
 
-// The knobs with the settings applied. Throws Failure (usage) for unknown names, wrong shapes and unknown options; warns
-// about values outside [min, max]. Variables PSE_Name without such a knob are nobody's business.
-std::vector<Knob> apply_settings(std::vector<Knob> knobs, const std::vector<KnobSetting>& settings, Console& console);
+// The knobs with the settings applied. Throws Failure (usage) for unknown names, wrong shapes and
+// unknown options; warns about values outside [min, max]. Variables PSE_Name without such a knob
+// are nobody's business.
+std::vector<Knob> apply_settings(std::vector<Knob> knobs, const std::vector<KnobSetting>& settings,
+                                 Console& console);
 
 // A knob's value as the command line would take it: "0.5", "[1 0 0]", "true", "text".
 std::string knob_text(const Knob& knob);

@@ -28,7 +28,8 @@ std::string quoted(std::string_view text) {
 
 std::string paragraphs(std::string_view text) {
   std::string out = quoted(text) + "\n";
-  for (std::size_t at = 0; (at = out.find("\n\n", at)) != std::string::npos; at += 5) out.replace(at, 2, "\n.PP\n");
+  for (std::size_t at = 0; (at = out.find("\n\n", at)) != std::string::npos; at += 5)
+    out.replace(at, 2, "\n.PP\n");
   return out;
 }
 
@@ -45,9 +46,11 @@ std::string common_sections() {
   for (const auto& [status, meaning] : exit_statuses()) out += term(status, meaning);
   out += ".SH ENVIRONMENT\n";
   for (const auto& [name, meaning] : environment_variables()) out += term(name, meaning);
-  out += ".SH FILES\n" + term("pse.toml", "values of options by their long names, at the top for all commands or in a "
-                                          "table named after one; read here and in the folders above, then in "
-                                          "XDG_CONFIG_HOME/pse, then in /etc/pse");
+  out += ".SH FILES\n" +
+         term("pse.toml",
+              "values of options by their long names, at the top for all commands or in a "
+              "table named after one; read here and in the folders above, then in "
+              "XDG_CONFIG_HOME/pse, then in /etc/pse");
   return out;
 }
 
@@ -65,11 +68,15 @@ std::string man_page(const CommandSpec& command, const std::string& date) {
     names += quoted(fmt::format("--{}", option.name));
     std::string value;
     if (option.takes == Takes::optional) value = fmt::format("[={}]", option.value);
-    if (option.takes == Takes::one || option.takes == Takes::many) value = fmt::format(" {}", option.value);
+    if (option.takes == Takes::one || option.takes == Takes::many)
+      value = fmt::format(" {}", option.value);
     std::string text = quoted(option.help);
-    if (!option.choices.empty()) text += quoted(fmt::format(" ({})", fmt::join(option.choices, ", ")));
-    if (!option.environment.empty()) text += fmt::format("\nAlso set by the variable {}.", option.environment);
-    out += fmt::format(".TP\n\\fB{}\\fR{}\n{}\n", names, value.empty() ? "" : "\\fI" + quoted(value) + "\\fR", text);
+    if (!option.choices.empty())
+      text += quoted(fmt::format(" ({})", fmt::join(option.choices, ", ")));
+    if (!option.environment.empty())
+      text += fmt::format("\nAlso set by the variable {}.", option.environment);
+    out += fmt::format(".TP\n\\fB{}\\fR{}\n{}\n", names,
+                       value.empty() ? "" : "\\fI" + quoted(value) + "\\fR", text);
   }
   if (!command.examples.empty()) out += ".SH EXAMPLES\n";
   for (const auto& [line, meaning] : command.examples) out += term(line, meaning);

@@ -12,58 +12,138 @@ using enum Takes;
 // Options that several commands share.
 const OptionSpec help = {"h", "help", nothing, "", "show this help; with a program also its knobs"};
 const OptionSpec quiet = {"q", "quiet", nothing, "", "say nothing but warnings and errors"};
-const OptionSpec include = {"I", "include", many, "DIR", "look for modules and files here too, before PSE_PATH", {},
-                            Offer::directory};
-const OptionSpec define = {"D", "define", many, "Name=VALUE", "set a knob; the same as Name=VALUE alone", {}, Offer::knob};
-const OptionSpec warn = {"W", "warn", many, "WHICH",
-                         "`error` makes warnings errors (exit 6), `no-NAME` hides those called NAME, `none` hides all"};
+const OptionSpec include = {
+    "I", "include",       many, "DIR", "look for modules and files here too, before PSE_PATH",
+    {},  Offer::directory};
+const OptionSpec define = {
+    "D", "define", many, "Name=VALUE", "set a knob; the same as Name=VALUE alone", {}, Offer::knob};
+const OptionSpec warn = {
+    "W", "warn", many, "WHICH",
+    "`error` makes warnings errors (exit 6), `no-NAME` hides those called NAME, `none` hides all"};
 const OptionSpec json = {"", "json", nothing, "", "print JSON instead of text"};
-const OptionSpec threads = {"t", "threads", one, "N", "threads to compute with; 0: all", {}, Offer::nothing, "PSE_THREADS"};
+const OptionSpec threads = {
+    "t", "threads", one, "N", "threads to compute with; 0: all", {}, Offer::nothing, "PSE_THREADS"};
 
 std::vector<OptionSpec> render_options() {
   return {
-      {"o", "output", many, "FILE",
-       "the picture to write: .exr .png .mp4 and others, `-` for standard output; NAME=FILE writes the variable NAME "
-       "(or NAME,NAME...); may be given several times", {}, Offer::image},
-      {"f", "frames", one, "LIST", "frames to compute: 1-100, 1-100x5, 1,5,9, -10--1", {}, Offer::nothing, "PSE_FRAMES"},
+      {"o",
+       "output",
+       many,
+       "FILE",
+       "the picture to write: .exr .png .mp4 and others, `-` for standard output; NAME=FILE writes "
+       "the variable NAME "
+       "(or NAME,NAME...); may be given several times",
+       {},
+       Offer::image},
+      {"f",
+       "frames",
+       one,
+       "LIST",
+       "frames to compute: 1-100, 1-100x5, 1,5,9, -10--1",
+       {},
+       Offer::nothing,
+       "PSE_FRAMES"},
       threads,
-      {"", "res", one, "WxH", "size of the picture in pixels; default: that of the first image, else 512x512", {},
-       Offer::nothing, "PSE_RES"},
-      {"", "clip", one, "X0,Y0,X1,Y1", "compute only these pixels of the picture, X1 and Y1 excluded", {}, Offer::nothing,
+      {"",
+       "res",
+       one,
+       "WxH",
+       "size of the picture in pixels; default: that of the first image, else 512x512",
+       {},
+       Offer::nothing,
+       "PSE_RES"},
+      {"",
+       "clip",
+       one,
+       "X0,Y0,X1,Y1",
+       "compute only these pixels of the picture, X1 and Y1 excluded",
+       {},
+       Offer::nothing,
        "PSE_CLIP"},
-      {"", "xform", one, "NUMBERS", "matrix from the picture's plane to `point`: 6, 9 or 16 numbers, row by row", {},
-       Offer::nothing, "PSE_XFORM"},
+      {"",
+       "xform",
+       one,
+       "NUMBERS",
+       "matrix from the picture's plane to `point`: 6, 9 or 16 numbers, row by row",
+       {},
+       Offer::nothing,
+       "PSE_XFORM"},
       {"", "seed", one, "N", "value of the variable `seed`", {}, Offer::nothing, "PSE_SEED"},
       {"", "fps", one, "RATE", "frames per second; default 24", {}, Offer::nothing, "PSE_FPS"},
       define,
-      {"", "params", many, "FILE", "set knobs from a file: TOML, or lines of `Name value`", {}, Offer::file},
+      {"",
+       "params",
+       many,
+       "FILE",
+       "set knobs from a file: TOML, or lines of `Name value`",
+       {},
+       Offer::file},
       include,
       {"", "layers", one, "NAMES", "write only these variables, separated by commas"},
-      {"", "format", one, "NAME", "format of a picture whose name does not say it; on standard output default exr", {"exr", "png"}},
+      {"",
+       "format",
+       one,
+       "NAME",
+       "format of a picture whose name does not say it; on standard output default exr",
+       {"exr", "png"}},
       {"", "half", nothing, "", "EXR: store every channel in 16 bits"},
       {"", "float", nothing, "", "EXR: store every channel in 32 bits"},
       {"", "bits", one, "N", "PNG: bits of a channel; default 8", {"8", "16"}},
-      {"", "compression", one, "NAME", "EXR: how to compress; default zip",
+      {"",
+       "compression",
+       one,
+       "NAME",
+       "EXR: how to compress; default zip",
        {"none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"}},
       {"", "tiled", nothing, "", "EXR: store tiles instead of scan lines"},
-      {"", "colorspace", one, "NAME", "the space of the program's colours; default lin_rec709",
+      {"",
+       "colorspace",
+       one,
+       "NAME",
+       "the space of the program's colours; default lin_rec709",
        {"lin_rec709", "acescg"}},
-      {"", "display", one, "NAME", "transform to the screen for PNG, JPEG and MP4; default srgb", {"srgb", "filmic", "none"}},
-      {"", "nan", one, "POLICY", "what to do with NaN and infinity in a result; default keep, with a warning",
+      {"",
+       "display",
+       one,
+       "NAME",
+       "transform to the screen for PNG, JPEG and MP4; default srgb",
+       {"srgb", "filmic", "none"}},
+      {"",
+       "nan",
+       one,
+       "POLICY",
+       "what to do with NaN and infinity in a result; default keep, with a warning",
        {"keep", "black", "box3", "error"}},
       {"", "resume", nothing, "", "skip frames whose file was made by the same recipe"},
       {"", "no-provenance", nothing, "", "do not store program, knobs and frame in the picture"},
       warn,
       {"", "tile", one, "N", "side of the tiles that threads work on, in pixels; default 64"},
-      {"", "width", one, "N", "samples per vector instruction; 0: the best for this processor", {"0", "1", "4", "8", "16"}},
+      {"",
+       "width",
+       one,
+       "N",
+       "samples per vector instruction; 0: the best for this processor",
+       {"0", "1", "4", "8", "16"}},
       {"", "interpret", nothing, "", "run by the reference interpreter instead of compiled code"},
       {"", "no-optimize", nothing, "", "leave out the optimising passes"},
       {"", "no-cache", nothing, "", "neither use nor keep compiled kernels on disk"},
-      {"", "emit", one, "STAGE", "print a stage of the compiler on standard output and stop",
+      {"",
+       "emit",
+       one,
+       "STAGE",
+       "print a stage of the compiler on standard output and stop",
        {"tokens", "ast", "ir", "opt", "llvm", "asm"}},
-      {"", "stats", optional, "FORMAT", "report times, operations and memory; `--stats=json` for JSON on standard output",
+      {"",
+       "stats",
+       optional,
+       "FORMAT",
+       "report times, operations and memory; `--stats=json` for JSON on standard output",
        {"text", "json"}},
-      {"", "progress", one, "STYLE", "how to report progress; default bar on a terminal, else none",
+      {"",
+       "progress",
+       one,
+       "STYLE",
+       "how to report progress; default bar on a terminal, else none",
        {"plain", "bar", "json", "none"}},
       quiet,
       help,
@@ -72,65 +152,113 @@ std::vector<OptionSpec> render_options() {
 
 const std::vector<CommandSpec>& table() {
   static const std::vector<CommandSpec> all = {
-      {"render", "PROGRAM [IMAGE...] [name=IMAGE...] [Name=VALUE...] -o FILE", "compute a picture or a sequence of pictures",
-       "Runs PROGRAM at every pixel and writes what it sets. `-` reads the program, or an image, from standard input.\n"
+      {"render",
+       "PROGRAM [IMAGE...] [name=IMAGE...] [Name=VALUE...] -o FILE",
+       "compute a picture or a sequence of pictures",
+       "Runs PROGRAM at every pixel and writes what it sets. `-` reads the program, or an image, "
+       "from standard input.\n"
        "\n"
-       "The first IMAGE brings its channels as `color`, `alpha`, `Z` and so on; name=IMAGE brings them as `name.color`... "
-       "Name=VALUE sets a knob of the program. A knob is taken from the program, the variable PSE_Name, the --params file "
+       "The first IMAGE brings its channels as `color`, `alpha`, `Z` and so on; name=IMAGE brings "
+       "them as `name.color`... "
+       "Name=VALUE sets a knob of the program. A knob is taken from the program, the variable "
+       "PSE_Name, the --params file "
        "or the command line; the later one wins.\n"
        "\n"
-       "In the name of a sequence, %04d stands for the frame number in four digits, #### as well; a lone # is four digits.",
-       Offer::program, render_options(),
+       "In the name of a sequence, %04d stands for the frame number in four digits, #### as well; "
+       "a lone # is four digits.",
+       Offer::program,
+       render_options(),
        {{"pse render marble.pse -o marble.png", "a picture of 512 x 512 pixels"},
-        {"pse render marble.pse --res 1920x1080 Scale=3 -o marble.exr", "another size and another value of a knob"},
+        {"pse render marble.pse --res 1920x1080 Scale=3 -o marble.exr",
+         "another size and another value of a knob"},
         {"pse render fire.pse -f 1-100 -o fire.%04d.exr", "a sequence"},
         {"pse render fire.pse -f 1-100 -o fire.mp4", "a film"},
         {"pse render over.pse fg=ball.%04d.exr bg=sky.exr -f 1-3 -o out.%04d.exr", "compositing"},
         {"pse render a.pse -o - | pse render b.pse - -o b.png", "programs as filters"},
         {"pse render marble.pse --help", "the program's own knobs"}}},
-      {"check", "PROGRAM... [IMAGE] [name=IMAGE...]", "report errors and warnings of programs",
-       "Compiles each PROGRAM as far as its errors need and prints what it found. `-` is standard input. With images, "
-       "programs may read the channels that these have; without, `color`, `alpha`, `Z` and name.channel of any name.",
+      {"check",
+       "PROGRAM... [IMAGE] [name=IMAGE...]",
+       "report errors and warnings of programs",
+       "Compiles each PROGRAM as far as its errors need and prints what it found. `-` is standard "
+       "input. With images, "
+       "programs may read the channels that these have; without, `color`, `alpha`, `Z` and "
+       "name.channel of any name.",
        Offer::program,
        {json, warn, include, quiet, help},
        {{"pse check *.pse", "all programs here"},
         {"pse check fire.pse heat.exr", "with the image that the program reads"},
         {"pse check --json a.pse", "for an editor"}}},
-      {"fmt", "PROGRAM...", "lay a program out in pse's one style",
-       "Prints the formatted program, or rewrites the files in place. `-` is standard input.", Offer::program,
+      {"fmt",
+       "PROGRAM...",
+       "lay a program out in pse's one style",
+       "Prints the formatted program, or rewrites the files in place. `-` is standard input.",
+       Offer::program,
        {{"", "check", nothing, "", "change nothing; exit 6 where a file is not formatted"},
         {"i", "in-place", nothing, "", "rewrite the files"},
         quiet,
         help},
-       {{"pse fmt -i *.pse", "format all programs here"}, {"pse fmt --check *.pse", "for a script"}}},
-      {"info", "FILE...", "tell what is in a program or an image",
-       "For a program: what it reads and sets, its knobs, and how many operations are computed once, once per frame and "
+       {{"pse fmt -i *.pse", "format all programs here"},
+        {"pse fmt --check *.pse", "for a script"}}},
+      {"info",
+       "FILE...",
+       "tell what is in a program or an image",
+       "For a program: what it reads and sets, its knobs, and how many operations are computed "
+       "once, once per frame and "
        "once per sample. For an image: size, channels, layers and provenance.",
-       Offer::file, {json, include, quiet, help}, {{"pse info marble.pse", ""}, {"pse info ball.0001.exr", ""}}},
-      {"doc", "[NAME...]", "documentation of functions and variables",
-       "Prints the documentation of builtin functions, of the library and of the variables that the image plane brings. "
+       Offer::file,
+       {json, include, quiet, help},
+       {{"pse info marble.pse", ""}, {"pse info ball.0001.exr", ""}}},
+      {"doc",
+       "[NAME...]",
+       "documentation of functions and variables",
+       "Prints the documentation of builtin functions, of the library and of the variables that "
+       "the image plane brings. "
        "Without a name: an overview.",
-       Offer::nothing, {{"l", "list", nothing, "", "only the names, a line each"}, json, include, help},
+       Offer::nothing,
+       {{"l", "list", nothing, "", "only the names, a line each"}, json, include, help},
        {{"pse doc Noise", ""}, {"pse doc --list", ""}}},
-      {"diff", "IMAGE IMAGE", "compare two images",
-       "Compares the channels that both have, pixel by pixel. Exit 0 where no difference is above the tolerance, else 6.",
+      {"diff",
+       "IMAGE IMAGE",
+       "compare two images",
+       "Compares the channels that both have, pixel by pixel. Exit 0 where no difference is above "
+       "the tolerance, else 6.",
        Offer::image,
        {{"", "tolerance", one, "X", "largest difference that counts as equal; default 0"},
-        {"o", "output", one, "FILE", "write the absolute differences as an image", {}, Offer::image},
+        {"o",
+         "output",
+         one,
+         "FILE",
+         "write the absolute differences as an image",
+         {},
+         Offer::image},
         json,
         include,
         quiet,
         help},
        {{"pse diff a.exr b.exr --tolerance 1e-3", ""}}},
-      {"completion", "bash|zsh|fish", "print a shell's completion script",
-       "Prints the script. For bash: source <(pse completion bash). For zsh: save it as _pse in a folder of $fpath. For "
+      {"completion",
+       "bash|zsh|fish",
+       "print a shell's completion script",
+       "Prints the script. For bash: source <(pse completion bash). For zsh: save it as _pse in a "
+       "folder of $fpath. For "
        "fish: save it as ~/.config/fish/completions/pse.fish.",
-       Offer::nothing, {help}, {{"source <(pse completion bash)", "in ~/.bashrc"}}},
-      {"help", "[COMMAND]", "help on a command",
-       "Prints what COMMAND --help prints; with --man its manual page in the format of man.", Offer::nothing,
+       Offer::nothing,
+       {help},
+       {{"source <(pse completion bash)", "in ~/.bashrc"}}},
+      {"help",
+       "[COMMAND]",
+       "help on a command",
+       "Prints what COMMAND --help prints; with --man its manual page in the format of man.",
+       Offer::nothing,
        {{"", "man", nothing, "", "print a manual page"}, help},
        {{"pse help render", ""}, {"pse help --man render | man -l -", "read the manual page"}}},
-      {"version", "", "print the version", "Prints the version of pse.", Offer::nothing, {help}, {}},
+      {"version",
+       "",
+       "print the version",
+       "Prints the version of pse.",
+       Offer::nothing,
+       {help},
+       {}},
   };
   return all;
 }
@@ -151,7 +279,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 7> variables
     {"PSE_Name", "value of the knob `Name`"},
     {"PSE_PATH", "folders of modules and images, separated by colons"},
     {"XDG_CACHE_HOME", "compiled kernels are kept in its folder pse; default ~/.cache"},
-    {"XDG_CONFIG_HOME", "pse/pse.toml is read there after pse.toml here and upward; default ~/.config"},
+    {"XDG_CONFIG_HOME",
+     "pse/pse.toml is read there after pse.toml here and upward; default ~/.config"},
     {"NO_COLOR", "when set, no colours"},
     {"OCIO", "an OpenColorIO configuration"},
     {"SOURCE_DATE_EPOCH", "the time to store in files"},
@@ -162,7 +291,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 7> variables
 std::span<const CommandSpec> commands() { return table(); }
 
 const CommandSpec* find_command(std::string_view name) {
-  const auto found = std::find_if(table().begin(), table().end(), [&](const auto& c) { return c.name == name; });
+  const auto found =
+      std::find_if(table().begin(), table().end(), [&](const auto& c) { return c.name == name; });
   return found == table().end() ? nullptr : &*found;
 }
 
@@ -173,6 +303,8 @@ const OptionSpec* find_option(const CommandSpec& command, std::string_view name)
 }
 
 std::span<const std::pair<std::string_view, std::string_view>> exit_statuses() { return statuses; }
-std::span<const std::pair<std::string_view, std::string_view>> environment_variables() { return variables; }
+std::span<const std::pair<std::string_view, std::string_view>> environment_variables() {
+  return variables;
+}
 
 }  // namespace pse::app

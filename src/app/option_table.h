@@ -1,4 +1,5 @@
-// The one table of commands and options. Parsing, --help, the man pages and the shell completions all read it.
+// The one table of commands and options. Parsing, --help, the man pages and the shell completions
+// all read it.
 #pragma once
 
 #include <span>

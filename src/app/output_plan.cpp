@@ -20,8 +20,8 @@ std::string format_of(const OutputRequest& request, const image::WriteOptions& w
 }
 
 bool is_display(const OutputRequest& request, const image::WriteOptions& write) {
-  const std::string format = format_of(request, write);
-  return format == "mp4" || format == "mov" || image::is_display_format(format);
+  return image::is_movie_name(request.file) ||
+         image::is_display_format(format_of(request, write));
 }
 
 const ProgramOutput* find_output(const Program& program, const std::string& name) {
@@ -36,22 +36,27 @@ const ProgramOutput& require_output(const Program& program, const std::string& n
   for (const ProgramOutput& output : program.outputs) names.push_back(output.name);
   const std::string near = nearest_name(name, names);
   throw usage_error(fmt::format("the program sets no variable `{}`", name),
-                    near.empty() ? fmt::format("it sets: {}", fmt::join(names, ", ")) : fmt::format("did you mean `{}`?", near));
+                    near.empty() ? fmt::format("it sets: {}", fmt::join(names, ", "))
+                                 : fmt::format("did you mean `{}`?", near));
 }
 
 std::size_t module_output(const Program& program, const ProgramOutput& output, int component) {
-  const std::string name = output.components == 1 ? output.name : fmt::format("{}.{}", output.name, component);
+  const std::string name =
+      output.components == 1 ? output.name : fmt::format("{}.{}", output.name, component);
   const auto& outputs = program.module().outputs;
-  const auto found = std::find_if(outputs.begin(), outputs.end(), [&](const ir::Output& o) { return o.name == name; });
+  const auto found = std::find_if(outputs.begin(), outputs.end(),
+                                  [&](const ir::Output& o) { return o.name == name; });
   if (found == outputs.end()) throw std::logic_error("the module has no output " + name);
   return static_cast<std::size_t>(found - outputs.begin());
 }
 
 // The channels of a picture for display: colour or grey, and alpha.
-void add_picture(PlannedFile& file, const Program& program, const ProgramOutput& output, const ProgramOutput* alpha) {
+void add_picture(PlannedFile& file, const Program& program, const ProgramOutput& output,
+                 const ProgramOutput* alpha) {
   const char* const names[] = {"R", "G", "B", "A"};
   const auto add = [&](const char* name, const ProgramOutput& from, int component) {
-    file.channels.push_back({{name, image::PixelType::float32}, module_output(program, from, component)});
+    file.channels.push_back(
+        {{name, image::PixelType::float32}, module_output(program, from, component)});
   };
   if (output.components == 1) {
     add("Y", output, 0);
@@ -61,13 +66,16 @@ void add_picture(PlannedFile& file, const Program& program, const ProgramOutput&
   }
   if (alpha != nullptr && alpha->components == 1 && output.components != 4) add("A", *alpha, 0);
   // Numbers that are not colours are shown as they are.
-  if (output.name != "color" && !image::is_colour_name(output.name)) file.write.tone = image::Tone::raw;
+  if (output.name != "color" && !image::is_colour_name(output.name))
+    file.write.tone = image::Tone::raw;
 }
 
-void add_layer(PlannedFile& file, const Program& program, const ProgramOutput& output, const RenderOptions& options) {
+void add_layer(PlannedFile& file, const Program& program, const ProgramOutput& output,
+               const RenderOptions& options) {
   image::StorageOptions storage;
   if (options.storage) storage = {*options.storage, *options.storage};
-  for (const image::OutputChannel& channel : image::channels_of(output.name, output.components, storage))
+  for (const image::OutputChannel& channel :
+       image::channels_of(output.name, output.components, storage))
     file.channels.push_back({channel.channel, module_output(program, output, channel.component)});
 }
 
@@ -93,7 +101,8 @@ std::vector<std::string> wanted_variables(const RenderOptions& options, const la
 std::vector<PlannedFile> plan_outputs(const RenderOptions& options, const Program& program) {
   std::vector<PlannedFile> files;
   if (program.outputs.empty())
-    throw Failure(Exit::program, "the program sets no variable, so there is nothing to write", "set color");
+    throw Failure(Exit::program, "the program sets no variable, so there is nothing to write",
+                  "set color");
   for (const OutputRequest& request : options.outputs) {
     PlannedFile file{request.file, options.write, {}};
     file.write.format = format_of(request, options.write);
@@ -101,19 +110,22 @@ std::vector<PlannedFile> plan_outputs(const RenderOptions& options, const Progra
       const ProgramOutput* color = find_output(program, "color");
       const ProgramOutput* alpha = find_output(program, "alpha");
       if (request.variables.empty()) {
-        add_picture(file, program, color != nullptr ? *color : program.outputs.front(), color != nullptr ? alpha : nullptr);
+        add_picture(file, program, color != nullptr ? *color : program.outputs.front(),
+                    color != nullptr ? alpha : nullptr);
       } else {
         const ProgramOutput& first = require_output(program, request.variables.front());
         const bool with_alpha = request.variables.size() == 2 && request.variables[1] == "alpha";
         if (request.variables.size() > 1 && !with_alpha)
-          throw usage_error(fmt::format("{} holds one picture, not {}", request.file, fmt::join(request.variables, ", ")),
+          throw usage_error(fmt::format("{} holds one picture, not {}", request.file,
+                                        fmt::join(request.variables, ", ")),
                             "write them to an EXR file, or each to a file of its own");
         add_picture(file, program, first, with_alpha ? &require_output(program, "alpha") : nullptr);
       }
     } else if (request.variables.empty()) {
       for (const ProgramOutput& output : program.outputs) add_layer(file, program, output, options);
     } else {
-      for (const std::string& name : request.variables) add_layer(file, program, require_output(program, name), options);
+      for (const std::string& name : request.variables)
+        add_layer(file, program, require_output(program, name), options);
     }
     files.push_back(std::move(file));
   }

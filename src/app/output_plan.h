@@ -3,6 +3,7 @@
 
 #include "app/render_options.h"
 #include "image/layers.h"
+#include "image/movie.h"
 #include "lang/ast.h"
 #include "stream/program.h"
 
@@ -17,6 +18,8 @@ struct PlannedFile {
   std::string pattern;
   image::WriteOptions write;
   std::vector<PlannedChannel> channels;
+
+  bool is_film() const { return image::is_movie_name(pattern); }
 };
 
 // The variables to compute, for LowerOptions::outputs; empty: all of them.

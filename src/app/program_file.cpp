@@ -24,16 +24,19 @@ ProgramFile read_program(const std::string& name, const Session& session) {
 }
 
 LowerHost module_host(const std::string& program_path, const Session& session) {
-  std::vector<fs::path> folders = {program_path == "-" ? fs::path(".") : fs::path(program_path).parent_path()};
+  std::vector<fs::path> folders = {program_path == "-" ? fs::path(".")
+                                                       : fs::path(program_path).parent_path()};
   const std::vector<fs::path> more = session.search_path();
   folders.insert(folders.end(), more.begin(), more.end());
 
   LowerHost host;
-  host.find_module = [folders](SourceMap& sources, const std::string& name) -> std::optional<FileId> {
+  host.find_module = [folders](SourceMap& sources,
+                               const std::string& name) -> std::optional<FileId> {
     for (const fs::path& folder : folders) {
       const fs::path file = folder / (name + ".pse");
       std::error_code error;
-      if (fs::is_regular_file(file, error)) return sources.add(file.string(), read_text_file(file.string()));
+      if (fs::is_regular_file(file, error))
+        return sources.add(file.string(), read_text_file(file.string()));
     }
     return std::nullopt;
   };

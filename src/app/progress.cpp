@@ -7,7 +7,8 @@
 
 namespace pse::app {
 
-Progress::Progress(Console& console, ProgressStyle style, int frames) : console_(console), style_(style), frames_(frames) {}
+Progress::Progress(Console& console, ProgressStyle style, int frames)
+    : console_(console), style_(style), frames_(frames) {}
 
 double Progress::seconds() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
@@ -27,10 +28,13 @@ void Progress::show(double done) {
   const double elapsed = seconds();
   const double left = done > 0 ? elapsed * (1 - done) / done : 0;
   if (style_ == ProgressStyle::json) {
-    console_.raw_error(fmt::format(R"({{"done": {:.4f}, "frame": {}, "elapsed": {:.3f}, "left": {:.3f}}})", done, frame_, elapsed, left));
+    console_.raw_error(
+        fmt::format(R"({{"done": {:.4f}, "frame": {}, "elapsed": {:.3f}, "left": {:.3f}}})", done,
+                    frame_, elapsed, left));
     return;
   }
-  const std::string frame = frames_ > 1 ? fmt::format("frame {} ({} of {})  ", frame_, index_ + 1, frames_) : "";
+  const std::string frame =
+      frames_ > 1 ? fmt::format("frame {} ({} of {})  ", frame_, index_ + 1, frames_) : "";
   const std::string time = done > 0 ? fmt::format("{} left", human_seconds(left)) : "";
   if (style_ == ProgressStyle::plain) {
     // A line per tenth of the whole is enough for a log.

@@ -31,7 +31,8 @@ std::string recipe(const RenderContext& context, const PlannedFile& file) {
 
   // The picture.
   const ImagePlane& plane = context.plane;
-  for (const int value : {plane.width, plane.height, context.window.x0, context.window.y0, context.window.x1, context.window.y1})
+  for (const int value : {plane.width, plane.height, context.window.x0, context.window.y0,
+                          context.window.x1, context.window.y1})
     hasher.add(value);
   hasher.add(plane.seed);
   const PlaneTransform transform = plane.transform.value_or(PlaneTransform{});
@@ -42,8 +43,8 @@ std::string recipe(const RenderContext& context, const PlannedFile& file) {
   const image::WriteOptions& write = file.write;
   hasher.add(write.format);
   for (const int value : {static_cast<int>(write.compression), write.tile_width, write.tile_height,
-                          static_cast<int>(write.working), static_cast<int>(write.tone), write.bits, write.quality,
-                          static_cast<int>(context.options.nan)})
+                          static_cast<int>(write.working), static_cast<int>(write.tone), write.bits,
+                          write.quality, static_cast<int>(context.options.nan)})
     hasher.add(value);
   for (const PlannedChannel& channel : file.channels) {
     hasher.add(channel.channel.name);

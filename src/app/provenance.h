@@ -1,4 +1,5 @@
-// What a picture was made from: stored in the file as pse/... attributes, and the recipe that --resume compares.
+// What a picture was made from: stored in the file as pse/... attributes, and the recipe that
+// --resume compares.
 #pragma once
 
 #include <map>

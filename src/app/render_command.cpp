@@ -36,14 +36,16 @@ Exit show_help(Session& session) {
   Diagnostics diagnostics;
   const Lowered lowered = survey(program, module_host(program.path, session), diagnostics);
   if (diagnostics.has_errors()) report(diagnostics, program.sources, session);
-  session.console.print(fmt::format("usage: pse render {} [IMAGE...] [Name=VALUE...] -o FILE\n\n", words.front()));
+  session.console.print(
+      fmt::format("usage: pse render {} [IMAGE...] [Name=VALUE...] -o FILE\n\n", words.front()));
   session.console.print(knob_help(lowered.knobs));
   session.console.print("\n`pse render --help` lists the options.\n");
   return Exit::ok;
 }
 
 CompileOptions compile_options(const RenderOptions& options, const InputImages& images,
-                               const std::vector<KnobSetting>& settings, const lang::Program& tree) {
+                               const std::vector<KnobSetting>& settings,
+                               const lang::Program& tree) {
   CompileOptions compile;
   // The names of images hide those of the plane.
   compile.lower.stream = images.names();
@@ -51,7 +53,8 @@ CompileOptions compile_options(const RenderOptions& options, const InputImages& 
   compile.lower.outputs = wanted_variables(options, tree);
   for (const KnobSetting& setting : settings) {
     // The last setting of a name counts.
-    std::erase_if(compile.lower.text_knobs, [&](const auto& knob) { return knob.first == setting.name; });
+    std::erase_if(compile.lower.text_knobs,
+                  [&](const auto& knob) { return knob.first == setting.name; });
     compile.lower.text_knobs.emplace_back(setting.name, setting.text);
   }
   compile.codegen.width = options.width;
@@ -74,7 +77,8 @@ Exit render_command(Session& session) {
   const std::string stage = session.arguments.text_or("emit", "");
   const std::string stats = session.arguments.text_or("stats", "");
   if (options.outputs.empty() && stage.empty() && stats.empty())
-    throw usage_error("where should the picture go?", fmt::format("-o {}.png", fs::path(options.program).stem().string()));
+    throw usage_error("where should the picture go?",
+                      fmt::format("-o {}.png", fs::path(options.program).stem().string()));
   const std::vector<KnobSetting> settings = knob_settings(session, options.knob_words);
   ProgramFile program = read_program(options.program, session);
   InputImages images(options, session);
@@ -102,11 +106,13 @@ Exit render_command(Session& session) {
   textures.load(compiled->module());
 
   // Run.
-  RenderJob job(session, options, program.sources, program.file, compiled, knobs, images, textures, signals);
+  RenderJob job(session, options, program.sources, program.file, compiled, knobs, images, textures,
+                signals);
   const Exit exit = job.run();
   if (!stats.empty()) {
     RunStats numbers = job.stats();
-    numbers.total_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    numbers.total_seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (stats == "json")
       session.console.print(stats_json(numbers));
     else

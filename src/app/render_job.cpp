@@ -16,10 +16,24 @@ namespace {
 int choose_tile(const RenderOptions& options, const Rect& window) {
   if (options.tile > 0) return options.tile;
   int tile = 64;
-  const auto tiles = [&] { return double(window.width()) * window.height() / (double(tile) * tile); };
+  const auto tiles = [&] {
+    return double(window.width()) * window.height() / (double(tile) * tile);
+  };
   while (tile > 16 && tiles() < 8.0 * thread_count(options.threads)) tile /= 2;
   return tile;
 }
+
+// The job that the signals may stop, for as long as this lives.
+class Watch {
+ public:
+  Watch(Signals& signals, RunStatus& run) : signals_(signals) { signals_.watch(&run); }
+  ~Watch() { signals_.watch(nullptr); }
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
+
+ private:
+  Signals& signals_;
+};
 
 // Memory for tiles that wait for their turn to be written.
 constexpr std::size_t tile_memory = std::size_t{128} << 20;
@@ -30,13 +44,14 @@ std::vector<int> choose_frames(const RenderOptions& options) {
   if (!options.frames.empty()) return options.frames;
   for (const ImageRequest& image : options.images)
     if (image::is_pattern(image.file))
-      if (std::vector<int> frames = image::existing_frames(image.file); !frames.empty()) return frames;
+      if (std::vector<int> frames = image::existing_frames(image.file); !frames.empty())
+        return frames;
   return {0};
 }
 
-RenderJob::RenderJob(Session& session, const RenderOptions& options, const SourceMap& sources, FileId file,
-                     std::shared_ptr<const Program> program, std::vector<Knob> knobs, InputImages& images,
-                     const Textures& textures, Signals& signals)
+RenderJob::RenderJob(Session& session, const RenderOptions& options, const SourceMap& sources,
+                     FileId file, std::shared_ptr<const Program> program, std::vector<Knob> knobs,
+                     InputImages& images, const Textures& textures, Signals& signals)
     : session_(session),
       options_(options),
       sources_(sources),
@@ -49,16 +64,23 @@ RenderJob::RenderJob(Session& session, const RenderOptions& options, const Sourc
       frames_(choose_frames(options)),
       files_(plan_outputs(options, *program_)),
       first_names_(images.names()),
-      progress_(session.console, progress_style(session.arguments.text_or("progress", ""), session.console),
+      progress_(session.console,
+                progress_style(session.arguments.text_or("progress", ""), session.console),
                 static_cast<int>(frames_.size())) {
   // The picture: as asked for, as the images are, or 512 x 512.
   const auto display = images_.display();
-  const Resolution size = options_.resolution.value_or(display ? Resolution{display->width(), display->height()} : Resolution{512, 512});
+  const Resolution size = options_.resolution.value_or(
+      display ? Resolution{display->width(), display->height()} : Resolution{512, 512});
   if (display && (size.width != display->width() || size.height != display->height()))
-    throw Failure(Exit::input, fmt::format("the picture is to have {}x{} pixels and the images have {}x{}", size.width,
-                                           size.height, display->width(), display->height()),
+    throw Failure(Exit::input,
+                  fmt::format("the picture is to have {}x{} pixels and the images have {}x{}",
+                              size.width, size.height, display->width(), display->height()),
                   "leave out --res, or scale the images first");
-  plane_ = {.width = size.width, .height = size.height, .fps = options_.fps, .seed = options_.seed, .transform = options_.transform};
+  plane_ = {.width = size.width,
+            .height = size.height,
+            .fps = options_.fps,
+            .seed = options_.seed,
+            .transform = options_.transform};
   window_ = choose_window();
   stats_.compile = program_->times;
   stats_.operations = count_operations(*program_->split);
@@ -68,9 +90,10 @@ RenderJob::RenderJob(Session& session, const RenderOptions& options, const Sourc
 
   // Several frames need several files.
   for (const PlannedFile& planned : files_)
-    if (frames_.size() > 1 && !image::is_pattern(planned.pattern))
-      throw usage_error(fmt::format("{} frames would all go to `{}`", frames_.size(), planned.pattern),
-                        "put %04d into the name where the frame's number should stand");
+    if (frames_.size() > 1 && !planned.is_film() && !image::is_pattern(planned.pattern))
+      throw usage_error(
+          fmt::format("{} frames would all go to `{}`", frames_.size(), planned.pattern),
+          "put %04d into the name where the frame's number should stand");
 }
 
 Rect RenderJob::choose_window() const {
@@ -78,13 +101,17 @@ Rect RenderJob::choose_window() const {
   const auto display = images_.display(), data = images_.data();
   if (!display) return {0, 0, plane_.width, plane_.height};
   // Images may have pixels beyond their frame; then so has the result.
-  return {data->x0 - display->x0, data->y0 - display->y0, data->x1 - display->x0, data->y1 - display->y0};
+  return {data->x0 - display->x0, data->y0 - display->y0, data->x1 - display->x0,
+          data->y1 - display->y0};
 }
 
 Exit RenderJob::run() {
+  const Watch watch(signals_, status_);
   Exit exit = Exit::ok;
-  for (std::size_t i = 0; i < frames_.size() && exit == Exit::ok; ++i) exit = run_frame(static_cast<int>(i), frames_[i]);
+  for (std::size_t i = 0; i < frames_.size() && exit == Exit::ok; ++i)
+    exit = run_frame(static_cast<int>(i), frames_[i]);
   progress_.finish();
+  if (exit == Exit::ok) close_films();
   return exit;
 }
 
@@ -97,12 +124,13 @@ Exit RenderJob::run_frame(int index, int frame) {
   }
 
   // What this frame is made from, and whether it is there already.
-  RenderContext context{options_, sources_, file_, *program_, knobs_, plane_, window_, images_.identities()};
+  RenderContext context{options_, sources_, file_,   *program_,
+                        knobs_,   plane_,   window_, images_.identities()};
   for (const auto& texture : textures_.identities()) context.inputs.push_back(texture);
   std::vector<std::string> recipes;
   if (options_.provenance)
     for (const PlannedFile& planned : files_) recipes.push_back(recipe(context, planned));
-  if (options_.resume && skip_done(frame, recipes)) return Exit::ok;
+  if (options_.resume && !status_.cancel && skip_done(frame, recipes)) return Exit::ok;
 
   // Open the files.
   image::ImageSpec common;
@@ -113,15 +141,14 @@ Exit RenderJob::run_frame(int index, int frame) {
   if (options_.provenance) common.attributes = provenance(context);
   const TileSource pixels = images_.load(program_->module());
   const TileSource coordinates = image_plane_source(program_->module(), plane_, window_);
-  FrameWriter writer(files_, frame, common, window_, options_.nan, recipes);
+  FrameWriter writer(files_, frame, common, window_, options_.nan, recipes,
+                     [this](std::size_t file, const std::string& name,
+                            const image::ImageSpec& spec) { return open_writer(file, name, spec); });
 
   // Compute.
   progress_.begin_frame(index, frame);
-  RunStatus status;
-  signals_.watch(&status);
   const auto source = [&](const TileView& tile) { coordinates(tile), pixels(tile); };
-  const RunResult result = compute(source, files_.empty() ? nullptr : &writer, status);
-  signals_.watch(nullptr);
+  const RunResult result = compute(source, files_.empty() ? nullptr : &writer);
   stats_.compute_seconds += result.seconds;
   if (result.end == RunEnd::failed) return report_failure(result, frame), Exit::running;
   if (const int signal = signals_.stop_signal()) {
@@ -135,14 +162,15 @@ Exit RenderJob::run_frame(int index, int frame) {
 
   // Put the files in their places.
   for (const std::string& name : writer.close())
-    if (name != "-") session_.console.note(fmt::format("wrote {}", name));
+    if (name != "-" && !image::is_movie_name(name))
+      session_.console.note(fmt::format("wrote {}", name));
   report_not_finite(writer);
   return Exit::ok;
 }
 
 bool RenderJob::skip_done(int frame, const std::vector<std::string>& recipes) const {
   for (std::size_t i = 0; i < files_.size(); ++i)
-    if (!is_done(*image::frame_name(files_[i].pattern, frame), recipes[i])) return false;
+    if (files_[i].is_film() || !is_done(*image::frame_name(files_[i].pattern, frame), recipes[i])) return false;
   for (const PlannedFile& planned : files_)
     session_.console.note(fmt::format("kept {}", *image::frame_name(planned.pattern, frame)));
   return true;
@@ -155,14 +183,43 @@ FrameState RenderJob::frame_state() const {
   state.externals = textures_.functions();
   for (const Knob& knob : knobs_)
     for (std::size_t c = 0; c < knob.value.size(); ++c) {
-      const std::string name = knob.value.size() == 1 ? knob.name : fmt::format("{}.{}", knob.name, c);
+      const std::string name =
+          knob.value.size() == 1 ? knob.name : fmt::format("{}.{}", knob.name, c);
       for (std::size_t i = 0; i < module.inputs.size(); ++i)
-        if (module.inputs[i].rate == ir::Rate::frame && module.inputs[i].name == name) state.uniforms[i] = knob.value[c];
+        if (module.inputs[i].rate == ir::Rate::frame && module.inputs[i].name == name)
+          state.uniforms[i] = knob.value[c];
     }
   return state;
 }
 
-RunResult RenderJob::compute(const TileSource& source, FrameWriter* writer, RunStatus& status) {
+image::Result<std::unique_ptr<image::ImageWriter>> RenderJob::open_writer(
+    std::size_t file, const std::string& name, const image::ImageSpec& spec) {
+  const image::WriteOptions& write = files_[file].write;
+  if (!files_[file].is_film()) return image::open_writer(name, spec, write);
+  films_.resize(files_.size());
+  if (!films_[file]) {
+    image::MovieOptions movie;
+    movie.frames_per_second = options_.fps;
+    movie.working = write.working;
+    movie.tone = write.tone;
+    movie.dither = write.dither;
+    auto film = image::open_movie(name, spec, movie);
+    if (!film) return std::unexpected(film.error());
+    films_[file] = std::move(*film);
+  }
+  return films_[file]->next_frame(spec);
+}
+
+void RenderJob::close_films() {
+  for (std::size_t i = 0; i < films_.size(); ++i) {
+    if (!films_[i]) continue;
+    if (const auto done = films_[i]->close(); !done)
+      throw Failure(Exit::output, done.error().message);
+    session_.console.note(fmt::format("wrote {}", files_[i].pattern));
+  }
+}
+
+RunResult RenderJob::compute(const TileSource& source, FrameWriter* writer) {
   const auto sink = [&](const TileView& tile) {
     if (writer != nullptr) writer->add(tile);
   };
@@ -181,7 +238,7 @@ RunResult RenderJob::compute(const TileSource& source, FrameWriter* writer, RunS
                   .ordered_sink = writer != nullptr,
                   .progress = progress,
                   .memory_limit = tile_memory},
-                 status);
+                 status_);
 }
 
 void RenderJob::write_snapshots(FrameWriter& writer) {
@@ -198,13 +255,16 @@ void RenderJob::write_snapshots(FrameWriter& writer) {
 void RenderJob::check_channels() const {
   const std::vector<StreamName> names = images_.names();
   for (const StreamName& first : first_names_) {
-    const bool read = std::find(program_->reads.begin(), program_->reads.end(), first.name) != program_->reads.end();
+    const bool read = std::find(program_->reads.begin(), program_->reads.end(), first.name) !=
+                      program_->reads.end();
     const bool same = std::any_of(names.begin(), names.end(), [&](const StreamName& name) {
       return name.name == first.name && name.components == first.components;
     });
     if (read && !same)
-      throw Failure(Exit::input, fmt::format("the images of frame {:.0f} have no `{}` with {} component{} as those of the first frame have",
-                                             plane_.frame, first.name, first.components, first.components == 1 ? "" : "s"));
+      throw Failure(Exit::input, fmt::format("the images of frame {:.0f} have no `{}` with {} "
+                                             "component{} as those of the first frame have",
+                                             plane_.frame, first.name, first.components,
+                                             first.components == 1 ? "" : "s"));
   }
 }
 
@@ -228,10 +288,12 @@ void RenderJob::report_not_finite(const FrameWriter& writer) {
     const auto output = std::find_if(program_->outputs.begin(), program_->outputs.end(),
                                      [&](const ProgramOutput& o) { return o.name == name; });
     const image::NotFinite& found = channel.found;
-    diagnostics.warning("not-finite", output == program_->outputs.end() ? Span{} : output->span,
-                        fmt::format("`{}` is NaN at {} and infinite at {} pixels, first at ({}, {}) of frame {:.0f}", name,
-                                    found.nan, found.infinite, found.x, found.y, plane_.frame),
-                        "--nan black, box3 or error says what to do with them");
+    diagnostics.warning(
+        "not-finite", output == program_->outputs.end() ? Span{} : output->span,
+        fmt::format(
+            "`{}` is NaN at {} and infinite at {} pixels, first at ({}, {}) of frame {:.0f}", name,
+            found.nan, found.infinite, found.x, found.y, plane_.frame),
+        "--nan black, box3 or error says what to do with them");
   }
   if (!diagnostics.all().empty()) progress_.finish();
   report(diagnostics, sources_, session_);

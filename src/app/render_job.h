@@ -27,7 +27,11 @@ class RenderJob {
   Rect choose_window() const;
   bool skip_done(int frame, const std::vector<std::string>& recipes) const;
   FrameState frame_state() const;
-  RunResult compute(const TileSource& source, FrameWriter* writer, RunStatus& status);
+  image::Result<std::unique_ptr<image::ImageWriter>> open_writer(std::size_t file,
+                                                                 const std::string& name,
+                                                                 const image::ImageSpec& spec);
+  void close_films();
+  RunResult compute(const TileSource& source, FrameWriter* writer);
   void write_snapshots(FrameWriter& writer);
   void check_channels() const;
   void report_failure(const RunResult& result, int frame);
@@ -42,8 +46,10 @@ class RenderJob {
   InputImages& images_;
   const Textures& textures_;
   Signals& signals_;
+  RunStatus status_;  // of all frames: once cancelled, no other begins
   std::vector<int> frames_;
   std::vector<PlannedFile> files_;
+  std::vector<std::unique_ptr<image::MovieWriter>> films_;  // one per file; null where it is none
   std::vector<StreamName> first_names_;  // what the images of the first frame brought
   ImagePlane plane_;
   Rect window_;

@@ -12,14 +12,18 @@ namespace pse::app {
 namespace {
 
 bool is_variable_name(std::string_view text) {
-  const auto letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  const auto letter = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+  };
   return !text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) == 0 &&
          std::all_of(text.begin(), text.end(), letter);
 }
 
-// RES, CLIP and XFORM may stand among the arguments as the 2002 chapter's special parameters: they are options.
+// RES, CLIP and XFORM may stand among the arguments as the 2002 chapter's special parameters: they
+// are options.
 bool take_special(const std::string& name, const std::string& value, Arguments& arguments) {
-  for (const auto& [special, option] : {std::pair{"RES", "res"}, {"CLIP", "clip"}, {"XFORM", "xform"}}) {
+  for (const auto& [special, option] :
+       {std::pair{"RES", "res"}, {"CLIP", "clip"}, {"XFORM", "xform"}}) {
     if (name != special) continue;
     arguments.options[option] = {{value, name}};
     return true;
@@ -38,7 +42,8 @@ void sort_words(RenderOptions& options, Arguments& arguments) {
       else
         options.images.push_back({"", word});
     } else if (std::isupper(static_cast<unsigned char>(name.front())) != 0) {
-      if (!take_special(name, word.substr(equals + 1), arguments)) options.knob_words.push_back(word);
+      if (!take_special(name, word.substr(equals + 1), arguments))
+        options.knob_words.push_back(word);
     } else {
       if (word.size() == equals + 1) throw usage_error(fmt::format("`{}` names no image", word));
       options.images.push_back({name, word.substr(equals + 1)});
@@ -54,8 +59,9 @@ void check_images(const RenderOptions& options) {
   for (const ImageRequest& image : options.images) {
     standard_inputs += image.file == "-" ? 1 : 0;
     if (std::find(names.begin(), names.end(), image.name) != names.end())
-      throw usage_error(image.name.empty() ? fmt::format("`{}` is the second image without a name", image.file)
-                                           : fmt::format("two images are called `{}`", image.name),
+      throw usage_error(image.name.empty()
+                            ? fmt::format("`{}` is the second image without a name", image.file)
+                            : fmt::format("two images are called `{}`", image.name),
                         image.name.empty() ? fmt::format("give it one: bg={}", image.file) : "");
     names.push_back(image.name);
   }
@@ -73,11 +79,14 @@ std::vector<OutputRequest> output_requests(const Arguments& arguments) {
       if (std::all_of(names.begin(), names.end(), is_variable_name) && !names.empty())
         output = {names, value.text.substr(equals + 1)};
     }
-    if (output.file.empty()) throw usage_error(fmt::format("{}: `{}` names no file", value.origin, value.text));
-    if (const auto pattern = image::canonical_pattern(output.file); !pattern) throw usage_error(pattern.error());
+    if (output.file.empty())
+      throw usage_error(fmt::format("{}: `{}` names no file", value.origin, value.text));
+    if (const auto pattern = image::canonical_pattern(output.file); !pattern)
+      throw usage_error(pattern.error());
     standard_outputs += output.file == "-" ? 1 : 0;
     for (const OutputRequest& other : outputs)
-      if (other.file == output.file) throw usage_error(fmt::format("two outputs go to `{}`", output.file));
+      if (other.file == output.file)
+        throw usage_error(fmt::format("two outputs go to `{}`", output.file));
     outputs.push_back(std::move(output));
   }
   if (standard_outputs > 1) throw usage_error("only one output can go to standard output");
@@ -97,7 +106,8 @@ void read_write_options(const Arguments& arguments, RenderOptions& options) {
   write.bits = arguments.text_or("bits", "8") == "16" ? 16 : 8;
   if (arguments.has("tiled")) write.tile_width = write.tile_height = 64;
   options.nan = *image::nan_policy_from_name(arguments.text_or("nan", "keep"));
-  if (arguments.has("half") && arguments.has("float")) throw usage_error("--half and --float exclude each other");
+  if (arguments.has("half") && arguments.has("float"))
+    throw usage_error("--half and --float exclude each other");
   if (arguments.has("half")) options.storage = image::PixelType::float16;
   if (arguments.has("float")) options.storage = image::PixelType::float32;
 }
@@ -117,19 +127,24 @@ RenderOptions render_options(const Session& session) {
   if (const auto value = arguments.value("xform")) {
     options.transform = plane_transform(parse_numbers(*value));
     if (!options.transform)
-      throw usage_error(fmt::format("{} takes 6, 9 or 16 numbers, not `{}`", value->origin, value->text),
-                        "2, 0, 0.5, 0, 2, 0 scales by 2 and moves x by 0.5");
+      throw usage_error(
+          fmt::format("{} takes 6, 9 or 16 numbers, not `{}`", value->origin, value->text),
+          "2, 0, 0.5, 0, 2, 0 scales by 2 and moves x by 0.5");
   }
   if (const auto value = arguments.value("frames")) {
     const auto frames = image::parse_frames(value->text);
-    if (!frames) throw usage_error(fmt::format("{}: {}", value->origin, frames.error()), "for example: 1-100, 1-100x5, 1,5,9");
+    if (!frames)
+      throw usage_error(fmt::format("{}: {}", value->origin, frames.error()),
+                        "for example: 1-100, 1-100x5, 1,5,9");
     options.frames = *frames;
   }
   if (const auto value = arguments.value("fps")) options.fps = parse_number(*value, 1e-3, 1e6);
-  if (const auto value = arguments.value("seed")) options.seed = static_cast<std::uint32_t>(parse_integer(*value, 0, 1 << 24));
+  if (const auto value = arguments.value("seed"))
+    options.seed = static_cast<std::uint32_t>(parse_integer(*value, 0, 1 << 24));
 
   // How it is computed.
-  if (const auto value = arguments.value("threads")) options.threads = parse_integer(*value, 0, 1024);
+  if (const auto value = arguments.value("threads"))
+    options.threads = parse_integer(*value, 0, 1024);
   if (const auto value = arguments.value("tile")) options.tile = parse_integer(*value, 1, 4096);
   if (const auto value = arguments.value("width")) options.width = parse_integer(*value, 0, 16);
   options.interpret = arguments.has("interpret");

@@ -29,8 +29,10 @@ WarningPolicy warning_policy(const Arguments& arguments) {
 Diagnostics filtered(const Diagnostics& diagnostics, const WarningPolicy& policy) {
   Diagnostics shown;
   for (const Diagnostic& diagnostic : diagnostics.all()) {
-    const bool hidden = std::find(policy.hidden.begin(), policy.hidden.end(), diagnostic.code) != policy.hidden.end();
-    if (diagnostic.severity == Severity::error || !(policy.hide_all || hidden)) shown.add(diagnostic);
+    const bool hidden = std::find(policy.hidden.begin(), policy.hidden.end(), diagnostic.code) !=
+                        policy.hidden.end();
+    if (diagnostic.severity == Severity::error || !(policy.hide_all || hidden))
+      shown.add(diagnostic);
   }
   shown.sort();
   return shown;
@@ -38,8 +40,9 @@ Diagnostics filtered(const Diagnostics& diagnostics, const WarningPolicy& policy
 
 Exit exit_of(const Diagnostics& diagnostics, const WarningPolicy& policy) {
   if (diagnostics.has_errors()) return Exit::program;
-  const bool warned = std::any_of(diagnostics.all().begin(), diagnostics.all().end(),
-                                  [](const Diagnostic& d) { return d.severity == Severity::warning; });
+  const bool warned =
+      std::any_of(diagnostics.all().begin(), diagnostics.all().end(),
+                  [](const Diagnostic& d) { return d.severity == Severity::warning; });
   return warned && policy.are_errors ? Exit::strict : Exit::ok;
 }
 
@@ -48,7 +51,8 @@ void report(const Diagnostics& diagnostics, const SourceMap& sources, Session& s
   const Diagnostics shown = filtered(diagnostics, policy);
   session.console.raw_error(print_text(shown, sources, session.console.colour()));
   const Exit exit = exit_of(shown, policy);
-  if (exit == Exit::strict) throw Failure(exit, "there are warnings, and -Werror makes them errors");
+  if (exit == Exit::strict)
+    throw Failure(exit, "there are warnings, and -Werror makes them errors");
   if (exit != Exit::ok) throw Failure(exit, "");
 }
 

@@ -17,7 +17,8 @@ WarningPolicy warning_policy(const Arguments& arguments);
 // The diagnostics that the policy shows, in order.
 Diagnostics filtered(const Diagnostics& diagnostics, const WarningPolicy& policy);
 
-// Prints them as text on standard error. Throws Failure: `program` after errors, `strict` after warnings under -Werror.
+// Prints them as text on standard error. Throws Failure: `program` after errors, `strict` after
+// warnings under -Werror.
 void report(const Diagnostics& diagnostics, const SourceMap& sources, Session& session);
 // How a command should end after these (already filtered) diagnostics.
 Exit exit_of(const Diagnostics& diagnostics, const WarningPolicy& policy);

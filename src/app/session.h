@@ -19,7 +19,8 @@ struct Session {
 
   // Where modules and images are looked for after the program's own folder: -I, PSE_PATH, pse.toml.
   std::vector<std::filesystem::path> search_path() const;
-  // The file itself where it exists or is "-", else the first of that name on the search path, else the name unchanged.
+  // The file itself where it exists or is "-", else the first of that name on the search path, else
+  // the name unchanged.
   std::string find_file(const std::string& name) const;
 };
 

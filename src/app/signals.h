@@ -1,5 +1,5 @@
-// SIGINT and SIGTERM stop a job cleanly, SIGUSR1 asks for a snapshot. A thread of its own waits for them, so nothing
-// happens inside a signal handler.
+// SIGINT and SIGTERM stop a job cleanly, SIGUSR1 asks for a snapshot. A thread of its own waits for
+// them, so nothing happens inside a signal handler.
 #pragma once
 
 #include <atomic>
@@ -13,14 +13,15 @@ namespace pse::app {
 
 class Signals {
  public:
-  // Blocks the signals for this thread and those it starts from now on; create it before any other thread.
+  // Blocks the signals for this thread and those it starts from now on; create it before any other
+  // thread.
   Signals();
   ~Signals();
   Signals(const Signals&) = delete;
   Signals& operator=(const Signals&) = delete;
 
-  // While a run is watched, SIGINT and SIGTERM cancel it, and only a second one ends the process at once. While none
-  // is, they end the process: nothing is half written then that has a name.
+  // While a run is watched, SIGINT and SIGTERM cancel it, and only a second one ends the process at
+  // once. While none is, they end the process: nothing is half written then that has a name.
   void watch(RunStatus* run);
   // The signal that asked to stop, or 0.
   int stop_signal() const { return stop_signal_; }

@@ -19,7 +19,8 @@ struct RunStats {
   int width = 0, threads = 0;  // vector width; threads used
   int frames = 0;
   double samples = 0;
-  double compute_seconds = 0;  // in the executor, with reading tiles and handing them to the writers
+  double compute_seconds =
+      0;  // in the executor, with reading tiles and handing them to the writers
   double total_seconds = 0;
 };
 

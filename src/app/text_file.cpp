@@ -27,15 +27,18 @@ std::string read_text_file(const std::string& path) {
     throw Failure(Exit::input, fmt::format("cannot read {}: it is a folder", shown));
 
   const auto close = [](std::FILE* file) { return file == stdin ? 0 : std::fclose(file); };
-  const std::unique_ptr<std::FILE, decltype(close)> file(standard_input ? stdin : std::fopen(path.c_str(), "rb"), close);
-  if (!file) throw Failure(Exit::input, fmt::format("cannot read {}: {}", shown, std::strerror(errno)));
+  const std::unique_ptr<std::FILE, decltype(close)> file(
+      standard_input ? stdin : std::fopen(path.c_str(), "rb"), close);
+  if (!file)
+    throw Failure(Exit::input, fmt::format("cannot read {}: {}", shown, std::strerror(errno)));
 
   std::string text;
   std::string block(1 << 16, '\0');
   while (const std::size_t count = std::fread(block.data(), 1, block.size(), file.get())) {
     text.append(block, 0, count);
     if (text.size() > most_bytes)
-      throw Failure(Exit::input, fmt::format("{} is larger than the {} that a text may have", shown, human_bytes(most_bytes)));
+      throw Failure(Exit::input, fmt::format("{} is larger than the {} that a text may have", shown,
+                                             human_bytes(most_bytes)));
   }
   if (std::ferror(file.get()) != 0)
     throw Failure(Exit::input, fmt::format("cannot read {}: {}", shown, std::strerror(errno)));

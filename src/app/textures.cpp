@@ -20,7 +20,8 @@ TextureName parse_name(std::string_view name) {
     name.remove_prefix(std::min(name.size(), end + 1));
     return text;
   };
-  if (word() != "texture") throw Failure(Exit::running, "the program calls something that is no texture");
+  if (word() != "texture")
+    throw Failure(Exit::running, "the program calls something that is no texture");
   TextureName parts;
   parts.layer = word();
   parts.filter = word();
@@ -31,12 +32,14 @@ TextureName parse_name(std::string_view name) {
 
 }  // namespace
 
-Textures::Textures(const Session& session, const std::string& program_path, image::ColourSpace working) {
+Textures::Textures(const Session& session, const std::string& program_path,
+                   image::ColourSpace working) {
   namespace fs = std::filesystem;
   const fs::path beside = program_path == "-" ? fs::path() : fs::path(program_path).parent_path();
   resolve_ = [&session, beside](const std::string& file) {
     std::error_code error;
-    if (fs::path(file).is_relative() && fs::exists(beside / file, error)) return (beside / file).string();
+    if (fs::path(file).is_relative() && fs::exists(beside / file, error))
+      return (beside / file).string();
     return session.find_file(file);
   };
   image::ReadOptions options;
@@ -45,7 +48,8 @@ Textures::Textures(const Session& session, const std::string& program_path, imag
 }
 
 void Textures::answer(LowerHost& host) const {
-  host.texture_components = [cache = cache_](const std::string& file, const std::string& layer, std::string& error) {
+  host.texture_components = [cache = cache_](const std::string& file, const std::string& layer,
+                                             std::string& error) {
     const auto components = cache->components(file, layer);
     if (!components) error = components.error().message;
     return components.value_or(0);
@@ -57,9 +61,9 @@ void Textures::load(const ir::Module& module) {
     const TextureName name = parse_name(external.name);
     const auto texture = cache_->load(name.file, name.layer);
     if (!texture) throw Failure(Exit::input, texture.error().message);
-    calls_.push_back(std::make_unique<image::TextureCall>(
-        image::TextureCall{*texture, image::filter_from_name(name.filter).value_or(image::Filter::linear),
-                           image::wrap_from_name(name.wrap).value_or(image::Wrap::repeat), external.arguments > 2}));
+    calls_.push_back(std::make_unique<image::TextureCall>(image::TextureCall{
+        *texture, image::filter_from_name(name.filter).value_or(image::Filter::linear),
+        image::wrap_from_name(name.wrap).value_or(image::Wrap::repeat), external.arguments > 2}));
     identities_.emplace_back(name.file, file_identity(resolve_(name.file)));
   }
 }

@@ -9,7 +9,8 @@
 namespace pse::app {
 namespace {
 
-// The value as an option or a knob would be written on the command line; false where it is a table or a date.
+// The value as an option or a knob would be written on the command line; false where it is a table
+// or a date.
 bool add_element(const toml::node& node, TomlEntry& entry) {
   if (const auto* text = node.as_string()) {
     entry.is_text = true;
@@ -27,9 +28,10 @@ bool add_element(const toml::node& node, TomlEntry& entry) {
   return true;
 }
 
-void add_entry(const std::string& table, std::string_view key, const toml::node& node, const std::string& name,
-               std::vector<TomlEntry>& entries) {
-  TomlEntry entry{.table = table, .key = std::string(key), .line = static_cast<int>(node.source().begin.line)};
+void add_entry(const std::string& table, std::string_view key, const toml::node& node,
+               const std::string& name, std::vector<TomlEntry>& entries) {
+  TomlEntry entry{
+      .table = table, .key = std::string(key), .line = static_cast<int>(node.source().begin.line)};
   bool good = true;
   if (const auto* array = node.as_array()) {
     entry.is_array = true;
@@ -38,8 +40,9 @@ void add_entry(const std::string& table, std::string_view key, const toml::node&
     good = add_element(node, entry);
   }
   if (!good)
-    throw usage_error(fmt::format("{}:{}: `{}` must be a number, a truth value, a text or a list of these", name,
-                                  entry.line, entry.key));
+    throw usage_error(
+        fmt::format("{}:{}: `{}` must be a number, a truth value, a text or a list of these", name,
+                    entry.line, entry.key));
   entries.push_back(std::move(entry));
 }
 
@@ -51,14 +54,15 @@ std::vector<TomlEntry> read_toml(std::string_view text, const std::string& name)
     const toml::table root = toml::parse(text, name);
     for (const auto& [key, node] : root) {
       if (const auto* table = node.as_table()) {
-        for (const auto& [inner, value] : *table) add_entry(std::string(key.str()), inner.str(), value, name, entries);
+        for (const auto& [inner, value] : *table)
+          add_entry(std::string(key.str()), inner.str(), value, name, entries);
       } else {
         add_entry("", key.str(), node, name, entries);
       }
     }
   } catch (const toml::parse_error& error) {
-    throw usage_error(fmt::format("{}:{}:{}: {}", name, error.source().begin.line, error.source().begin.column,
-                                  error.description()));
+    throw usage_error(fmt::format("{}:{}:{}: {}", name, error.source().begin.line,
+                                  error.source().begin.column, error.description()));
   }
   return entries;
 }

@@ -17,7 +17,8 @@ struct TomlEntry {
   int line = 0;
 };
 
-// Throws Failure (usage) with file and line where the text is not TOML, or nests deeper than one table.
+// Throws Failure (usage) with file and line where the text is not TOML, or nests deeper than one
+// table.
 std::vector<TomlEntry> read_toml(std::string_view text, const std::string& name);
 
 }  // namespace pse::app

@@ -14,7 +14,8 @@ namespace {
 
 constexpr int largest_side = 1 << 18;
 
-[[noreturn]] void refuse(const OptionValue& value, std::string_view what, std::string_view example) {
+[[noreturn]] void refuse(const OptionValue& value, std::string_view what,
+                         std::string_view example) {
   throw usage_error(fmt::format("{} takes {}, not `{}`", value.origin, what, value.text),
                     fmt::format("for example: {}", example));
 }
@@ -56,7 +57,8 @@ Resolution parse_resolution(const OptionValue& value) {
     if (error != std::errc() || end != text.data() + text.size() || number < 1)
       refuse(value, "a size in pixels", "--res 1920x1080");
     if (number > largest_side)
-      throw usage_error(fmt::format("{}: {} pixels is more than the {} that a side may have", value.origin, number, largest_side));
+      throw usage_error(fmt::format("{}: {} pixels is more than the {} that a side may have",
+                                    value.origin, number, largest_side));
     return number;
   };
   if (parts.empty() || parts.size() > 2) refuse(value, "a size in pixels", "--res 1920x1080");
@@ -67,13 +69,15 @@ Resolution parse_resolution(const OptionValue& value) {
 
 Rect parse_clip(const OptionValue& value, const Resolution& picture) {
   const std::vector<double> n = parse_numbers(value);
-  const bool whole = std::all_of(n.begin(), n.end(), [](double v) { return v == std::floor(v) && std::abs(v) < 1e9; });
+  const bool whole = std::all_of(n.begin(), n.end(),
+                                 [](double v) { return v == std::floor(v) && std::abs(v) < 1e9; });
   if (n.size() != 4 || !whole) refuse(value, "four whole numbers of pixels", "--clip 0,0,256,256");
   const Rect clip = {std::max(static_cast<int>(n[0]), 0), std::max(static_cast<int>(n[1]), 0),
-                     std::min(static_cast<int>(n[2]), picture.width), std::min(static_cast<int>(n[3]), picture.height)};
+                     std::min(static_cast<int>(n[2]), picture.width),
+                     std::min(static_cast<int>(n[3]), picture.height)};
   if (clip.width() <= 0 || clip.height() <= 0)
-    throw usage_error(fmt::format("{} leaves no pixel of the {}x{} picture: `{}`", value.origin, picture.width,
-                                  picture.height, value.text),
+    throw usage_error(fmt::format("{} leaves no pixel of the {}x{} picture: `{}`", value.origin,
+                                  picture.width, picture.height, value.text),
                       "its numbers are x0,y0,x1,y1, from the top left, with x1 and y1 excluded");
   return clip;
 }
@@ -81,14 +85,17 @@ Rect parse_clip(const OptionValue& value, const Resolution& picture) {
 double parse_number(const OptionValue& value, double min, double max) {
   double number = 0;
   if (!read_number(value.text, number) || !(number >= min && number <= max))
-    throw usage_error(fmt::format("{} takes a number from {} to {}, not `{}`", value.origin, min, max, value.text));
+    throw usage_error(fmt::format("{} takes a number from {} to {}, not `{}`", value.origin, min,
+                                  max, value.text));
   return number;
 }
 
 int parse_integer(const OptionValue& value, int min, int max) {
   double number = 0;
-  if (!read_number(value.text, number) || number != std::floor(number) || !(number >= min && number <= max))
-    throw usage_error(fmt::format("{} takes a whole number from {} to {}, not `{}`", value.origin, min, max, value.text));
+  if (!read_number(value.text, number) || number != std::floor(number) ||
+      !(number >= min && number <= max))
+    throw usage_error(fmt::format("{} takes a whole number from {} to {}, not `{}`", value.origin,
+                                  min, max, value.text));
   return static_cast<int>(number);
 }
 

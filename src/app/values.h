@@ -1,4 +1,5 @@
-// What options' values mean: sizes, rectangles, numbers. Each throws Failure (usage) with an example of what is right.
+// What options' values mean: sizes, rectangles, numbers. Each throws Failure (usage) with an
+// example of what is right.
 #pragma once
 
 #include <string>

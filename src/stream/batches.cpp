@@ -1,5 +1,5 @@
-// A oneTBB pipeline of three stages (next batch, fill and compute, drain) with a fixed set of buffers, and a watcher
-// thread that passes on cancellation and reports progress.
+// A oneTBB pipeline of three stages (next batch, fill and compute, drain) with a fixed set of
+// buffers, and a watcher thread that passes on cancellation and reports progress.
 #include "stream/batches.h"
 
 #include <oneapi/tbb/global_control.h>
@@ -37,7 +37,11 @@ struct Slot {
 class Run {
  public:
   Run(const Program& program, const FrameState& state, const BatchPlan& plan, RunStatus& status)
-      : program_(program), state_(state), plan_(plan), status_(status), threads_(thread_count(plan.threads)) {
+      : program_(program),
+        state_(state),
+        plan_(plan),
+        status_(status),
+        threads_(thread_count(plan.threads)) {
     make_slots();
   }
 
@@ -60,18 +64,21 @@ class Run {
   }
 
  private:
-  // One set of buffers per batch in flight: a thread each, and some more where finished batches wait for their turn.
+  // One set of buffers per batch in flight: a thread each, and some more where finished batches
+  // wait for their turn.
   void make_slots() {
     const ir::Module& module = program_.module();
     std::vector<bool> used(module.inputs.size());
-    for (std::size_t i = 0; i < used.size(); ++i) used[i] = module.inputs[i].rate == ir::Rate::sample;
+    for (std::size_t i = 0; i < used.size(); ++i)
+      used[i] = module.inputs[i].rate == ir::Rate::sample;
     const std::vector<bool> all(module.outputs.size(), true);
 
     const std::size_t bytes =
         Planes::bytes(used, plan_.capacity) + Planes::bytes(all, plan_.capacity);
     std::int64_t count = threads_ * (plan_.ordered ? 4 : 1);
     if (plan_.memory_limit > 0)
-      count = std::min(count, static_cast<std::int64_t>(plan_.memory_limit / std::max<std::size_t>(bytes, 1)));
+      count = std::min(
+          count, static_cast<std::int64_t>(plan_.memory_limit / std::max<std::size_t>(bytes, 1)));
     count = std::clamp<std::int64_t>(count, 1, std::max<std::int64_t>(plan_.batches, 1));
 
     for (std::int64_t i = 0; i < count; ++i) {
@@ -89,12 +96,14 @@ class Run {
     const tbb::global_control more(tbb::global_control::max_allowed_parallelism,
                                    static_cast<std::size_t>(std::max(threads_, thread_count(0))));
     tbb::task_arena arena(threads_);
-    const auto last = plan_.ordered ? tbb::filter_mode::serial_in_order : tbb::filter_mode::parallel;
+    const auto last =
+        plan_.ordered ? tbb::filter_mode::serial_in_order : tbb::filter_mode::parallel;
     arena.execute([&] {
       tbb::parallel_pipeline(
           slots_.size(),
-          tbb::make_filter<void, Slot*>(tbb::filter_mode::serial_in_order,
-                                        [this](tbb::flow_control& control) { return next(control); }) &
+          tbb::make_filter<void, Slot*>(
+              tbb::filter_mode::serial_in_order,
+              [this](tbb::flow_control& control) { return next(control); }) &
               tbb::make_filter<Slot*, Slot*>(tbb::filter_mode::parallel,
                                              [this](Slot* slot) { return compute(*slot), slot; }) &
               tbb::make_filter<Slot*, void>(last, [this](Slot* slot) { drain(*slot); }));
@@ -146,7 +155,8 @@ class Run {
     }
   }
 
-  // A batch failed: later ones need not run, but earlier ones may still fail and must be let finish.
+  // A batch failed: later ones need not run, but earlier ones may still fail and must be let
+  // finish.
   void fail(const Slot& slot) {
     const std::lock_guard lock(mutex_);
     if (slot.batch >= first_failed_) return;
@@ -154,10 +164,12 @@ class Run {
     first_failed_ = slot.batch;
   }
 
-  bool skipped(std::int64_t batch) const { return stop_ || status_.cancel || batch >= first_failed_; }
+  bool skipped(std::int64_t batch) const {
+    return stop_ || status_.cancel || batch >= first_failed_;
+  }
 
-  // Cancellation reaches the kernels through each slot's own status, so that a failure in one batch leaves the place
-  // of a failure in another alone.
+  // Cancellation reaches the kernels through each slot's own status, so that a failure in one batch
+  // leaves the place of a failure in another alone.
   void watch(const std::stop_token& stop) {
     std::mutex mutex;
     std::condition_variable_any wake;
@@ -199,7 +211,8 @@ int thread_count(int wanted) {
   return wanted > 0 ? wanted : std::max(1, oneapi::tbb::info::default_concurrency());
 }
 
-BatchEnd run_batches(const Program& program, const FrameState& state, const BatchPlan& plan, RunStatus& status) {
+BatchEnd run_batches(const Program& program, const FrameState& state, const BatchPlan& plan,
+                     RunStatus& status) {
   return Run(program, state, plan, status).go();
 }
 

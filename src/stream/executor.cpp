@@ -23,7 +23,8 @@ class Tiling {
   Rect rect(std::int64_t tile) const {
     const int x0 = window_.x0 + static_cast<int>(tile % columns_) * tile_width_;
     const int y0 = window_.y0 + static_cast<int>(tile / columns_) * tile_height_;
-    return {x0, y0, std::min(x0 + tile_width_, window_.x1), std::min(y0 + tile_height_, window_.y1)};
+    return {x0, y0, std::min(x0 + tile_width_, window_.x1),
+            std::min(y0 + tile_height_, window_.y1)};
   }
 
  private:
@@ -36,12 +37,13 @@ std::int64_t area(const Rect& rect) { return std::int64_t{rect.width()} * rect.h
 
 }  // namespace
 
-RunResult execute(const Program& program, FrameState& state, const TileSource& source, const TileSink& sink,
-                  const ExecuteOptions& options, RunStatus& status) {
+RunResult execute(const Program& program, FrameState& state, const TileSource& source,
+                  const TileSink& sink, const ExecuteOptions& options, RunStatus& status) {
   const auto start = std::chrono::steady_clock::now();
   RunResult result;
   const auto finish = [&] {
-    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return result;
   };
 

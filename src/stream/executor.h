@@ -1,4 +1,5 @@
-// Runs a program over a two-dimensional stream of samples, tile by tile, in parallel, with progress and cancellation.
+// Runs a program over a two-dimensional stream of samples, tile by tile, in parallel, with progress
+// and cancellation.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +25,8 @@ struct Rect {
 struct TileView {
   Rect rect;
   std::int64_t count = 0;
-  std::span<float* const> planes;  // sources fill, sinks read: one array per Module::inputs / Module::outputs entry
+  std::span<float* const>
+      planes;  // sources fill, sinks read: one array per Module::inputs / Module::outputs entry
 };
 
 // Where samples come from. Called from several threads at once, each time for another tile.
@@ -36,23 +38,25 @@ struct ExecuteOptions {
   Rect window;
   int tile_width = 64;
   int tile_height = 64;
-  int threads = 0;            // 0: as many as the machine has
-  bool ordered_sink = false;  // the sink gets tiles one at a time, row of tiles by row of tiles, left to right
-  std::function<void(double done)> progress;  // 0..1, from one thread at a time, at most 20 times a second
+  int threads = 0;  // 0: as many as the machine has
+  bool ordered_sink =
+      false;  // the sink gets tiles one at a time, row of tiles by row of tiles, left to right
+  std::function<void(double done)>
+      progress;                  // 0..1, from one thread at a time, at most 20 times a second
   std::size_t memory_limit = 0;  // bytes of tiles alive at once; 0: what keeps the threads busy
 };
 
 struct RunResult {
   RunEnd end = RunEnd::finished;
   std::int32_t failed_check = -1;  // when failed: index of Module::checks
-  int x = 0, y = 0;                // when failed: a pixel where it happened; (-1, -1) in the frame's part
+  int x = 0, y = 0;  // when failed: a pixel where it happened; (-1, -1) in the frame's part
   double seconds = 0;
 };
 
-// `state` must be filled for the frame (uniforms of knobs and frame names, externals); this runs the frame function.
-// Setting status.cancel stops within 50 ms. Exceptions of source and sink stop the run and are thrown again from here.
-// The result does not depend on tile size or threads.
-RunResult execute(const Program& program, FrameState& state, const TileSource& source, const TileSink& sink,
-                  const ExecuteOptions& options, RunStatus& status);
+// `state` must be filled for the frame (uniforms of knobs and frame names, externals); this runs
+// the frame function. Setting status.cancel stops within 50 ms. Exceptions of source and sink stop
+// the run and are thrown again from here. The result does not depend on tile size or threads.
+RunResult execute(const Program& program, FrameState& state, const TileSource& source,
+                  const TileSink& sink, const ExecuteOptions& options, RunStatus& status);
 
 }  // namespace pse

@@ -1,5 +1,5 @@
-// Coordinates of the image plane. Everything is computed in double and rounded once, so that a pixel's coordinates are
-// the same whatever tile, window or machine computes it.
+// Coordinates of the image plane. Everything is computed in double and rounded once, so that a
+// pixel's coordinates are the same whatever tile, window or machine computes it.
 #include "stream/image_plane.h"
 
 #include <algorithm>
@@ -11,8 +11,8 @@ namespace {
 
 enum class Coordinate { x, y, u, v, px, py, point_x, point_y, point_z };
 
-constexpr std::array<std::string_view, 9> coordinate_names = {"x",  "y",       "u",       "v",      "px",
-                                                             "py", "point.0", "point.1", "point.2"};
+constexpr std::array<std::string_view, 9> coordinate_names = {
+    "x", "y", "u", "v", "px", "py", "point.0", "point.1", "point.2"};
 
 struct PlaneInput {
   std::size_t input;  // index in Module::inputs
@@ -23,7 +23,8 @@ std::vector<PlaneInput> find_plane_inputs(const ir::Module& module) {
   std::vector<PlaneInput> found;
   for (std::size_t i = 0; i < module.inputs.size(); ++i) {
     if (module.inputs[i].rate != ir::Rate::sample) continue;
-    const auto name = std::find(coordinate_names.begin(), coordinate_names.end(), module.inputs[i].name);
+    const auto name =
+        std::find(coordinate_names.begin(), coordinate_names.end(), module.inputs[i].name);
     if (name != coordinate_names.end())
       found.push_back({i, static_cast<Coordinate>(name - coordinate_names.begin())});
   }
@@ -41,7 +42,9 @@ Place plane_place(const ImagePlane& plane, int column, int row) {
 }
 
 Place transformed(const PlaneTransform& m, const Place& p) {
-  const auto row = [&](std::size_t r) { return m[4 * r] * p.x + m[4 * r + 1] * p.y + m[4 * r + 2] * p.z + m[4 * r + 3]; };
+  const auto row = [&](std::size_t r) {
+    return m[4 * r] * p.x + m[4 * r + 1] * p.y + m[4 * r + 2] * p.z + m[4 * r + 3];
+  };
   const double w = row(3);
   return {row(0) / w, row(1) / w, row(2) / w};
 }
@@ -49,11 +52,16 @@ Place transformed(const PlaneTransform& m, const Place& p) {
 double coordinate(const ImagePlane& plane, Coordinate which, int column, int row) {
   const double px = column + plane.sample_x, py = row + plane.sample_y;
   switch (which) {
-    case Coordinate::u: return px / plane.width;
-    case Coordinate::v: return 1 - py / plane.height;
-    case Coordinate::px: return px;
-    case Coordinate::py: return py;
-    default: break;
+    case Coordinate::u:
+      return px / plane.width;
+    case Coordinate::v:
+      return 1 - py / plane.height;
+    case Coordinate::px:
+      return px;
+    case Coordinate::py:
+      return py;
+    default:
+      break;
   }
   Place place = plane_place(plane, column, row);
   if (plane.transform) place = transformed(*plane.transform, place);
@@ -63,7 +71,8 @@ double coordinate(const ImagePlane& plane, Coordinate which, int column, int row
 }
 
 bool varies_along_row(Coordinate which) {
-  return which == Coordinate::x || which == Coordinate::u || which == Coordinate::px || which == Coordinate::point_x;
+  return which == Coordinate::x || which == Coordinate::u || which == Coordinate::px ||
+         which == Coordinate::point_x;
 }
 
 // One coordinate's values over the window's columns or rows, where it depends on one of them only.
@@ -127,26 +136,28 @@ std::optional<PlaneTransform> plane_transform(const std::vector<double>& n) {
 const std::vector<StreamName>& image_plane_names() {
   using enum ir::Rate;
   static const std::vector<StreamName> names = {
-      {"x", 1, sample},     {"y", 1, sample},        {"u", 1, sample},          {"v", 1, sample},
-      {"point", 3, sample}, {"px", 1, sample},       {"py", 1, sample},         {"frame", 1, frame},
-      {"time", 1, frame},   {"fps", 1, frame},       {"width", 1, frame},       {"height", 1, frame},
-      {"aspect", 1, frame}, {"pixelsize", 1, frame}, {"pixel_freq", 1, frame},  {"seed", 1, frame},
-      {"begin_frame", 1, frame}};
+      {"x", 1, sample},     {"y", 1, sample},         {"u", 1, sample},
+      {"v", 1, sample},     {"point", 3, sample},     {"px", 1, sample},
+      {"py", 1, sample},    {"frame", 1, frame},      {"time", 1, frame},
+      {"fps", 1, frame},    {"width", 1, frame},      {"height", 1, frame},
+      {"aspect", 1, frame}, {"pixelsize", 1, frame},  {"pixel_freq", 1, frame},
+      {"seed", 1, frame},   {"begin_frame", 1, frame}};
   return names;
 }
 
 void set_plane_uniforms(const ir::Module& module, const ImagePlane& plane, FrameState& state) {
   const double pixel_size = 2.0 / plane.height;
-  const std::array<std::pair<std::string_view, double>, 10> values = {{{"frame", plane.frame},
-                                                                       {"time", plane.frame / plane.fps},
-                                                                       {"fps", plane.fps},
-                                                                       {"width", plane.width},
-                                                                       {"height", plane.height},
-                                                                       {"aspect", double(plane.width) / plane.height},
-                                                                       {"pixelsize", pixel_size},
-                                                                       {"pixel_freq", 0.5 / pixel_size},
-                                                                       {"seed", plane.seed},
-                                                                       {"begin_frame", 1}}};
+  const std::array<std::pair<std::string_view, double>, 10> values = {
+      {{"frame", plane.frame},
+       {"time", plane.frame / plane.fps},
+       {"fps", plane.fps},
+       {"width", plane.width},
+       {"height", plane.height},
+       {"aspect", double(plane.width) / plane.height},
+       {"pixelsize", pixel_size},
+       {"pixel_freq", 0.5 / pixel_size},
+       {"seed", plane.seed},
+       {"begin_frame", 1}}};
   state.uniforms.resize(module.inputs.size());
   for (std::size_t i = 0; i < module.inputs.size(); ++i) {
     if (module.inputs[i].rate == ir::Rate::sample) continue;
@@ -155,7 +166,8 @@ void set_plane_uniforms(const ir::Module& module, const ImagePlane& plane, Frame
   }
 }
 
-TileSource image_plane_source(const ir::Module& module, const ImagePlane& plane, const Rect& window) {
+TileSource image_plane_source(const ir::Module& module, const ImagePlane& plane,
+                              const Rect& window) {
   // Tabulate what depends on the column or on the row alone; a transform mixes the two.
   struct Tables {
     std::vector<Axis> axes;

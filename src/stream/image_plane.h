@@ -1,6 +1,7 @@
 // The image plane as a source of samples: the names that it brings and their values at each pixel.
-// Pixel (0, 0) is at the top left and samples lie at pixel centres. In the plane, x points right and y up, 0 is the
-// middle, and y runs from -1 at the bottom of the picture to 1 at its top; x from -aspect to aspect.
+// Pixel (0, 0) is at the top left and samples lie at pixel centres. In the plane, x points right
+// and y up, 0 is the middle, and y runs from -1 at the bottom of the picture to 1 at its top; x
+// from -aspect to aspect.
 #pragma once
 
 #include <array>
@@ -13,10 +14,12 @@
 
 namespace pse {
 
-// Maps the point [x y 0 1] of the plane to where the program sees it: rows of a 4x4 matrix. (The 2002 chapter's XFORM.)
+// Maps the point [x y 0 1] of the plane to where the program sees it: rows of a 4x4 matrix. (The
+// 2002 chapter's XFORM.)
 using PlaneTransform = std::array<double, 16>;
 
-// 16 numbers are the matrix row by row; 9 a 3x3 matrix of [x y 1]; 6 its first two rows. Nothing for other counts.
+// 16 numbers are the matrix row by row; 9 a 3x3 matrix of [x y 1]; 6 its first two rows. Nothing
+// for other counts.
 std::optional<PlaneTransform> plane_transform(const std::vector<double>& numbers);
 
 struct ImagePlane {
@@ -28,14 +31,17 @@ struct ImagePlane {
   std::optional<PlaneTransform> transform;
 };
 
-// x y u v point px py per sample; frame time fps width height aspect pixelsize pixel_freq seed begin_frame per frame.
+// x y u v point px py per sample; frame time fps width height aspect pixelsize pixel_freq seed
+// begin_frame per frame.
 const std::vector<StreamName>& image_plane_names();
 
-// Sets the uniforms of the module's frame-rate inputs that the plane brings; leaves the others alone. Makes room in
-// state.uniforms for every input.
+// Sets the uniforms of the module's frame-rate inputs that the plane brings; leaves the others
+// alone. Makes room in state.uniforms for every input.
 void set_plane_uniforms(const ir::Module& module, const ImagePlane& plane, FrameState& state);
 
-// Fills the module's sample-rate inputs that the plane brings, for tiles within `window`; leaves the others alone.
-TileSource image_plane_source(const ir::Module& module, const ImagePlane& plane, const Rect& window);
+// Fills the module's sample-rate inputs that the plane brings, for tiles within `window`; leaves
+// the others alone.
+TileSource image_plane_source(const ir::Module& module, const ImagePlane& plane,
+                              const Rect& window);
 
 }  // namespace pse

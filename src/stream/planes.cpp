@@ -9,12 +9,14 @@ namespace {
 
 constexpr std::size_t line = 16;        // floats in a cache line, and in the widest vector
 constexpr std::size_t page_lines = 64;  // lines after which addresses alias
-// Lines between neighbouring planes modulo a page. Any two of ten planes in a row are then 5 lines apart or more.
+// Lines between neighbouring planes modulo a page. Any two of ten planes in a row are then 5 lines
+// apart or more.
 constexpr std::size_t step = 23;
 
 // Floats from one plane to the next.
 std::size_t stride(std::int64_t capacity) {
-  const std::size_t lines = (static_cast<std::size_t>(std::max<std::int64_t>(capacity, 1)) + line - 1) / line;
+  const std::size_t lines =
+      (static_cast<std::size_t>(std::max<std::int64_t>(capacity, 1)) + line - 1) / line;
   const std::size_t shift = (step + page_lines - lines % page_lines) % page_lines;
   return (lines + shift) * line;
 }

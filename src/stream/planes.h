@@ -1,4 +1,5 @@
-// Buffers of one batch: an array of floats per name, placed so that kernels may run whole vectors over them.
+// Buffers of one batch: an array of floats per name, placed so that kernels may run whole vectors
+// over them.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +9,14 @@
 
 namespace pse {
 
-// Each plane starts at a multiple of 64 bytes and holds a multiple of 16 floats. Planes do not start at addresses that
-// are equal or near modulo 4096: there a load would wait for an earlier store to another plane.
+// Each plane starts at a multiple of 64 bytes and holds a multiple of 16 floats. Planes do not
+// start at addresses that are equal or near modulo 4096: there a load would wait for an earlier
+// store to another plane.
 class Planes {
  public:
   Planes() = default;
-  // One plane per entry of `used` that is true, null for the others; room for `capacity` floats each.
+  // One plane per entry of `used` that is true, null for the others; room for `capacity` floats
+  // each.
   Planes(const std::vector<bool>& used, std::int64_t capacity);
 
   std::span<float* const> pointers() const { return pointers_; }

@@ -30,7 +30,8 @@ SampleList samples_of(const Rect& rect) {
   SampleList list;
   list.reserve(static_cast<std::size_t>(rect.width()) * static_cast<std::size_t>(rect.height()));
   for (int y = rect.y0; y < rect.y1; ++y)
-    for (int x = rect.x0; x < rect.x1; ++x) list.push_back({x, y, static_cast<std::int64_t>(list.size())});
+    for (int x = rect.x0; x < rect.x1; ++x)
+      list.push_back({x, y, static_cast<std::int64_t>(list.size())});
   return list;
 }
 
@@ -50,9 +51,11 @@ NeighbourTable::NeighbourTable(const SampleList& list) : table_(list.size()) {
     return Place{sample.y, sample.x};
   };
   const auto before = [&](std::int32_t a, std::int32_t b) { return place_of(a) < place_of(b); };
-  if (!std::is_sorted(order.begin(), order.end(), before)) std::stable_sort(order.begin(), order.end(), before);
+  if (!std::is_sorted(order.begin(), order.end(), before))
+    std::stable_sort(order.begin(), order.end(), before);
 
-  // Look up each direction with a cursor of its own: places are asked for in rising order, so it only moves forward.
+  // Look up each direction with a cursor of its own: places are asked for in rising order, so it
+  // only moves forward.
   for (const Step& step : steps) {
     auto cursor = order.begin();
     for (const std::int32_t i : order) {
@@ -60,7 +63,8 @@ NeighbourTable::NeighbourTable(const SampleList& list) : table_(list.size()) {
       const Place wanted = {std::int64_t{sample.y} + step.dy, std::int64_t{sample.x} + step.dx};
       while (cursor != order.end() && place_of(*cursor) < wanted) ++cursor;
       const bool found = cursor != order.end() && place_of(*cursor) == wanted;
-      table_[static_cast<std::size_t>(i)][static_cast<std::size_t>(step.which)] = found ? *cursor : -1;
+      table_[static_cast<std::size_t>(i)][static_cast<std::size_t>(step.which)] =
+          found ? *cursor : -1;
     }
   }
 }
@@ -69,10 +73,12 @@ ListResult run_list(const Program& segment, const FrameState& state, const Sampl
                     std::span<const float* const> inputs, std::span<float* const> outputs,
                     const ListOptions& options, RunStatus& status) {
   const auto size = static_cast<std::int64_t>(list.size());
-  const std::int64_t batch = std::clamp<std::int64_t>(options.batch, 1, std::max<std::int64_t>(size, 1));
+  const std::int64_t batch =
+      std::clamp<std::int64_t>(options.batch, 1, std::max<std::int64_t>(size, 1));
   const auto part = [&](std::int64_t number) {
-    return std::span(list).subspan(static_cast<std::size_t>(number * batch),
-                                   static_cast<std::size_t>(std::min(batch, size - number * batch)));
+    return std::span(list).subspan(
+        static_cast<std::size_t>(number * batch),
+        static_cast<std::size_t>(std::min(batch, size - number * batch)));
   };
 
   BatchPlan plan;
@@ -93,7 +99,8 @@ ListResult run_list(const Program& segment, const FrameState& state, const Sampl
         for (std::size_t i = 0; i < samples.size(); ++i) outputs[p][samples[i].at] = planes[p][i];
   };
   const BatchEnd end = run_batches(segment, state, plan, status);
-  return {end.end, end.failed_check, static_cast<std::size_t>(end.failed_batch * batch + end.failed_sample)};
+  return {end.end, end.failed_check,
+          static_cast<std::size_t>(end.failed_batch * batch + end.failed_sample)};
 }
 
 }  // namespace pse

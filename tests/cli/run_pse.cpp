@@ -38,7 +38,8 @@ void CommandLine::SetUp() {
 void CommandLine::TearDown() { std::filesystem::remove_all(folder_); }
 
 std::vector<std::string> CommandLine::whole_environment() const {
-  std::map<std::string, std::string> all = {{"HOME", folder_.string()}, {"PATH", std::getenv("PATH") ? std::getenv("PATH") : ""}};
+  std::map<std::string, std::string> all = {
+      {"HOME", folder_.string()}, {"PATH", std::getenv("PATH") ? std::getenv("PATH") : ""}};
   // Compiled kernels are shared by the tests: compiling is not what they are about.
   all["XDG_CACHE_HOME"] = (std::filesystem::temp_directory_path() / "pse_cli_cache").string();
   for (const auto& [key, value] : environment) all[key] = value;
@@ -52,7 +53,8 @@ pid_t CommandLine::start(const std::vector<std::string>& arguments) {
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<std::string> variables = whole_environment();
   std::vector<char*> argv = pointers(words), envp = pointers(variables);
-  const std::string in = (folder_ / ".in").string(), out = (folder_ / ".out").string(), err = (folder_ / ".err").string();
+  const std::string in = (folder_ / ".in").string(), out = (folder_ / ".out").string(),
+                    err = (folder_ / ".err").string();
   const std::string where = folder_.string();
 
   const pid_t process = fork();
@@ -60,7 +62,9 @@ pid_t CommandLine::start(const std::vector<std::string>& arguments) {
     const int input = open(in.c_str(), O_RDONLY | O_CREAT, 0600);
     const int output = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     const int error = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    if (dup2(input, 0) < 0 || dup2(output, 1) < 0 || dup2(error, 2) < 0 || chdir(where.c_str()) != 0) _exit(99);
+    if (dup2(input, 0) < 0 || dup2(output, 1) < 0 || dup2(error, 2) < 0 ||
+        chdir(where.c_str()) != 0)
+      _exit(99);
     execve(argv[0], argv.data(), envp.data());
     _exit(98);
   }
@@ -90,7 +94,9 @@ std::string CommandLine::file(const std::string& name, const std::string& text) 
 
 std::string CommandLine::read(const std::string& name) const { return content(folder_ / name); }
 
-bool CommandLine::exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+bool CommandLine::exists(const std::string& name) const {
+  return std::filesystem::exists(folder_ / name);
+}
 
 image::Image CommandLine::picture(const std::string& name) const {
   auto read = image::read_image((folder_ / name).string());

@@ -1,4 +1,5 @@
-// Runs the built `pse` in a fresh folder with an environment of its own, and gives back all that it said.
+// Runs the built `pse` in a fresh folder with an environment of its own, and gives back all that it
+// said.
 #pragma once
 
 #include <sys/types.h>

@@ -9,12 +9,14 @@ class Arguments : public CommandLine {};
 constexpr const char* plain = "Scale = 2\ncolor = [u v Scale]\n";
 
 TEST_F(Arguments, VersionAndHelp) {
-  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{"--version"}, {"version"}, {"-V"}}) {
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"--version"}, {"version"}, {"-V"}}) {
     const Ended ended = pse(words);
     EXPECT_EQ(ended.status, 0);
     EXPECT_TRUE(contains(ended.out, "pse 0."));
   }
-  for (const char* command : {"render", "check", "fmt", "info", "doc", "diff", "completion", "help", "version"}) {
+  for (const char* command :
+       {"render", "check", "fmt", "info", "doc", "diff", "completion", "help", "version"}) {
     EXPECT_TRUE(contains(pse({"--help"}).out, command));
     const Ended ended = pse({command, "--help"});
     EXPECT_EQ(ended.status, 0);
@@ -53,17 +55,52 @@ TEST_F(Arguments, UnknownNamesComeWithTheNearestOne) {
 TEST_F(Arguments, WrongValuesAreUsageErrorsThatNameTheOption) {
   file("a.pse", plain);
   const std::vector<std::vector<std::string>> cases = {
-      {"--res", "0x5"},        {"--res", "axb"},       {"--res", "1x2x3"},    {"--res", "9999999x1"}, {"--res", ""},
-      {"--clip", "1,2,3"},     {"--clip", "0,0,a,1"},  {"--clip", "9,9,1,1"}, {"--clip", "600,0,700,9"},
-      {"--xform", "1,2,3"},    {"--xform", "1,2,x,4,5,6"},
-      {"-f", "1-"},            {"-f", "a"},            {"-f", "1-5x0"},       {"-f", ""},
-      {"-t", "-1"},            {"-t", "x"},            {"-t", "99999"},       {"--tile", "0"},
-      {"--width", "3"},        {"--fps", "0"},         {"--fps", "nan"},      {"--seed", "-1"},       {"--seed", "1.5"},
-      {"--bits", "9"},         {"--compression", "lzw"}, {"--colorspace", "x"}, {"--display", "crt"}, {"--progress", "x"},
-      {"--emit", "x"},         {"--stats=xml"},        {"-Wx"},               {"-D", "Scale"},        {"-D", "=3"},
-      {"Scale=red green"},     {"Scale=[1 2]"},        {"Scale="},            {"--half", "--float"},
-      {"--resume", "--no-provenance"},                 {"x.exr", "y.exr"},    {"a=x.exr", "a=y.exr"}, {"a="},
-      {"-o", "b.png", "-o", "b.png"},                  {"-o", ""},            {"-o"},                 {"--layers", "nothing"},
+      {"--res", "0x5"},
+      {"--res", "axb"},
+      {"--res", "1x2x3"},
+      {"--res", "9999999x1"},
+      {"--res", ""},
+      {"--clip", "1,2,3"},
+      {"--clip", "0,0,a,1"},
+      {"--clip", "9,9,1,1"},
+      {"--clip", "600,0,700,9"},
+      {"--xform", "1,2,3"},
+      {"--xform", "1,2,x,4,5,6"},
+      {"-f", "1-"},
+      {"-f", "a"},
+      {"-f", "1-5x0"},
+      {"-f", ""},
+      {"-t", "-1"},
+      {"-t", "x"},
+      {"-t", "99999"},
+      {"--tile", "0"},
+      {"--width", "3"},
+      {"--fps", "0"},
+      {"--fps", "nan"},
+      {"--seed", "-1"},
+      {"--seed", "1.5"},
+      {"--bits", "9"},
+      {"--compression", "lzw"},
+      {"--colorspace", "x"},
+      {"--display", "crt"},
+      {"--progress", "x"},
+      {"--emit", "x"},
+      {"--stats=xml"},
+      {"-Wx"},
+      {"-D", "Scale"},
+      {"-D", "=3"},
+      {"Scale=red green"},
+      {"Scale=[1 2]"},
+      {"Scale="},
+      {"--half", "--float"},
+      {"--resume", "--no-provenance"},
+      {"x.exr", "y.exr"},
+      {"a=x.exr", "a=y.exr"},
+      {"a="},
+      {"-o", "b.png", "-o", "b.png"},
+      {"-o", ""},
+      {"-o"},
+      {"--layers", "nothing"},
   };
   for (const std::vector<std::string>& words : cases) {
     std::vector<std::string> all = {"render", "a.pse", "-o", "a.exr"};
@@ -92,11 +129,14 @@ TEST_F(Arguments, FlagsStandInAnyOrder) {
 }
 
 TEST_F(Arguments, AProgramsHelpListsItsKnobs) {
-  file("a.pse", "Scale = 2 [[ min = 1, max = 8, help = \"size of the veins\", units = \"m\" ]]\n"
-                "Mode = \"soft\" [[ options = \"soft|hard\" ]]\nOn = true\nTint = [1 0.5 0]\ncolor = Tint * Scale\n");
+  file("a.pse",
+       "Scale = 2 [[ min = 1, max = 8, help = \"size of the veins\", units = \"m\" ]]\n"
+       "Mode = \"soft\" [[ options = \"soft|hard\" ]]\nOn = true\nTint = [1 0.5 0]\ncolor = Tint * "
+       "Scale\n");
   const Ended ended = pse({"render", "a.pse", "--help"});
   EXPECT_EQ(ended.status, 0) << ended.err;
-  for (const char* part : {"Scale=2", "size of the veins", "1 to 8", "in m", "Mode=soft", "soft | hard", "On=true", "Tint=[1 0.5 0]"})
+  for (const char* part : {"Scale=2", "size of the veins", "1 to 8", "in m", "Mode=soft",
+                           "soft | hard", "On=true", "Tint=[1 0.5 0]"})
     EXPECT_TRUE(contains(ended.out, part));
 }
 
@@ -113,7 +153,8 @@ TEST_F(Arguments, CompletionsAndManPagesKnowEveryOption) {
       const std::string name = help.substr(start, end - start);
       EXPECT_TRUE(contains(script, name)) << shell;
       std::string escaped = name;
-      for (std::size_t dash = 0; (dash = escaped.find('-', dash)) != std::string::npos; dash += 2) escaped.replace(dash, 1, "\\-");
+      for (std::size_t dash = 0; (dash = escaped.find('-', dash)) != std::string::npos; dash += 2)
+        escaped.replace(dash, 1, "\\-");
       EXPECT_NE(man.find(escaped), std::string::npos) << name;
     }
   }

@@ -55,7 +55,9 @@ TEST_F(Knobs, ValuesBeyondTheRangeAreWarnedOfAndUsed) {
 }
 
 TEST_F(Knobs, OtherKindsOfKnobs) {
-  file("a.pse", "Level = [0 0 0]\nOn = false\nMode = \"a\" [[ options = \"a|b\" ]]\ncolor = On ? Level : [9 9 9]\n");
+  file("a.pse",
+       "Level = [0 0 0]\nOn = false\nMode = \"a\" [[ options = \"a|b\" ]]\ncolor = On ? Level : [9 "
+       "9 9]\n");
   EXPECT_EQ(level({"Level=1,2,3", "On=yes"}), 1);
   EXPECT_EQ(level({"Level=[4 5 6]", "On=true"}), 4);
   EXPECT_EQ(level({"Level=5", "On=1", "Mode=b"}), 5);

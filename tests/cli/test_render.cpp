@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <thread>
 
@@ -28,7 +29,8 @@ TEST_F(Render, PixelsAreWhereTheyBelong) {
   EXPECT_EQ(ended.out, "");
   const image::Image image = picture("a.exr");
   EXPECT_EQ(image.spec.display, (image::Window{0, 0, 5, 3}));
-  for (const char* channel : {"R", "G", "B", "A", "heat.Y"}) EXPECT_GE(image.spec.find(channel), 0) << channel;
+  for (const char* channel : {"R", "G", "B", "A", "heat.Y"})
+    EXPECT_GE(image.spec.find(channel), 0) << channel;
   for (int y = 0; y < 3; ++y)
     for (int x = 0; x < 5; ++x) {
       EXPECT_EQ(image.at(image.spec.find("R"), x, y), static_cast<float>(x) + 0.5f);
@@ -38,7 +40,10 @@ TEST_F(Render, PixelsAreWhereTheyBelong) {
 
 TEST_F(Render, AClipIsAPartOfTheSamePicture) {
   file("a.pse", "color = [px py x]\n");
-  ASSERT_EQ(pse({"render", "a.pse", "-o", "a.exr", "--res", "50x30", "--clip", "7,5,23,17", "--float"}).status, 0);
+  ASSERT_EQ(
+      pse({"render", "a.pse", "-o", "a.exr", "--res", "50x30", "--clip", "7,5,23,17", "--float"})
+          .status,
+      0);
   const image::Image image = picture("a.exr");
   EXPECT_EQ(image.spec.display, (image::Window{0, 0, 50, 30}));
   EXPECT_EQ(image.spec.data, (image::Window{7, 5, 23, 17}));
@@ -50,10 +55,18 @@ TEST_F(Render, AClipIsAPartOfTheSamePicture) {
 TEST_F(Render, ThreadsTilesAndWidthsDoNotChangeAPixel) {
   file("a.pse", "t = turbulence(point * 5)\ncolor = white * t\nalpha = t > 0.5 ? 1 : 0\n");
   ASSERT_EQ(pse({"render", "a.pse", "-o", "a.exr", "--res", "61x43", "--float"}).status, 0);
-  for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
-           {"-t", "1"}, {"-t", "3", "--tile", "7"}, {"--width", "1"}, {"--width", "4"}, {"--interpret"}, {"--no-optimize"},
-           {"--tiled"}, {"--compression", "none"}, {"--no-cache"}}) {
-    std::vector<std::string> words = {"render", "a.pse", "-o", "b.exr", "--res", "61x43", "--float"};
+  for (const std::vector<std::string>& options :
+       std::vector<std::vector<std::string>>{{"-t", "1"},
+                                             {"-t", "3", "--tile", "7"},
+                                             {"--width", "1"},
+                                             {"--width", "4"},
+                                             {"--interpret"},
+                                             {"--no-optimize"},
+                                             {"--tiled"},
+                                             {"--compression", "none"},
+                                             {"--no-cache"}}) {
+    std::vector<std::string> words = {"render", "a.pse", "-o",     "b.exr",
+                                      "--res",  "61x43", "--float"};
     words.insert(words.end(), options.begin(), options.end());
     ASSERT_EQ(pse(words).status, 0) << options.front();
     EXPECT_EQ(pse({"diff", "a.exr", "b.exr"}).status, 0) << options.front();
@@ -64,7 +77,8 @@ TEST_F(Render, ImagesComeInAsNamesAndChainThroughPipes) {
   make_input("in.exr");
   file("a.pse", "color = 2 * color\n");
   file("b.pse", "color = fg.color + bg.color\nZ = fg.Z\n");
-  ASSERT_EQ(pse({"render", "b.pse", "fg=in.exr", "bg=in.exr", "-o", "sum.exr", "--float"}).status, 0);
+  ASSERT_EQ(pse({"render", "b.pse", "fg=in.exr", "bg=in.exr", "-o", "sum.exr", "--float"}).status,
+            0);
   Ended twice = pse({"render", "a.pse", "in.exr", "-o", "-", "--float"});
   ASSERT_EQ(twice.status, 0) << twice.err;
   file("twice.exr", twice.out);
@@ -91,7 +105,9 @@ TEST_F(Render, ImagesOfDifferentSizesAreRefused) {
   EXPECT_EQ(ended.status, 4);
   EXPECT_TRUE(contains(ended.err, "4x2"));
   EXPECT_TRUE(contains(ended.err, "8x8"));
-  EXPECT_EQ(pse({"render", "b.pse", "fg=in.exr", "bg=in.exr", "-o", "out.exr", "--res", "9x9"}).status, 4);
+  EXPECT_EQ(
+      pse({"render", "b.pse", "fg=in.exr", "bg=in.exr", "-o", "out.exr", "--res", "9x9"}).status,
+      4);
 }
 
 TEST_F(Render, ExitStatusesOfErrors) {
@@ -149,7 +165,8 @@ TEST_F(Render, NanIsReportedOnceAndTreatedAsAsked) {
 
 TEST_F(Render, Sequences) {
   file("a.pse", "color = [frame time fps]\n");
-  Ended ended = pse({"render", "a.pse", "-f", "-1-3x2", "-o", "s.####.exr", "--res", "2x2", "--float"});
+  Ended ended =
+      pse({"render", "a.pse", "-f", "-1-3x2", "-o", "s.####.exr", "--res", "2x2", "--float"});
   ASSERT_EQ(ended.status, 0) << ended.err;
   for (const char* name : {"s.-001.exr", "s.0001.exr", "s.0003.exr"}) {
     EXPECT_TRUE(exists(name)) << name;
@@ -171,10 +188,25 @@ TEST_F(Render, Sequences) {
   EXPECT_EQ(pse({"render", "b.pse", "missing.%04d.exr", "-f", "7", "-o", "t.#.exr"}).status, 4);
 }
 
+TEST_F(Render, AFilmHoldsAllFrames) {
+  if (std::system("command -v ffmpeg ffprobe > /dev/null") != 0) GTEST_SKIP() << "no ffmpeg here";
+  file("a.pse", "color = [u v frame / 4]\n");
+  const Ended ended =
+      pse({"render", "a.pse", "-f", "1-5", "-o", "a.mp4", "--res", "32x16", "--fps", "25"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  EXPECT_TRUE(contains(ended.err, "wrote a.mp4"));
+  const std::string probe = "ffprobe -v error -show_entries stream=nb_frames,width,r_frame_rate " +
+                            (folder() / "a.mp4").string() + " > " + (folder() / "probe").string();
+  ASSERT_EQ(std::system(probe.c_str()), 0);
+  for (const char* part : {"nb_frames=5", "width=32", "r_frame_rate=25/1"})
+    EXPECT_TRUE(contains(read("probe"), part));
+}
+
 TEST_F(Render, ResumeSkipsOnlyTheSameRecipe) {
   file("a.pse", "Level = 1\ncolor = [Level frame 0]\n");
   const auto run = [&](std::vector<std::string> more) {
-    std::vector<std::string> words = {"render", "a.pse", "-f", "1-3", "-o", "s.%04d.exr", "--res", "2x2", "--resume"};
+    std::vector<std::string> words = {"render",     "a.pse", "-f",  "1-3",     "-o",
+                                      "s.%04d.exr", "--res", "2x2", "--resume"};
     words.insert(words.end(), more.begin(), more.end());
     return pse(words);
   };
@@ -188,7 +220,8 @@ TEST_F(Render, ResumeSkipsOnlyTheSameRecipe) {
   EXPECT_TRUE(contains(run({"Level=2"}).err, "wrote s.0001.exr"));
   EXPECT_TRUE(contains(run({"Level=2", "--seed", "4"}).err, "wrote s.0001.exr"));
   EXPECT_TRUE(contains(run({"Level=2", "--seed", "4", "--float"}).err, "wrote s.0001.exr"));
-  EXPECT_TRUE(contains(run({"Level=2", "--seed", "4", "--float", "-t", "1"}).err, "kept s.0001.exr"));
+  EXPECT_TRUE(
+      contains(run({"Level=2", "--seed", "4", "--float", "-t", "1"}).err, "kept s.0001.exr"));
   file("a.pse", "Level = 1\ncolor = [Level frame 1]\n");
   EXPECT_TRUE(contains(run({"Level=2", "--seed", "4", "--float"}).err, "wrote s.0001.exr"));
 }
@@ -196,27 +229,35 @@ TEST_F(Render, ResumeSkipsOnlyTheSameRecipe) {
 TEST_F(Render, ProvenanceUnlessLeftOut) {
   file("a.pse", "Level = 1\ncolor = [Level frame 0]\n");
   for (const char* name : {"a.exr", "a.png"}) {
-    ASSERT_EQ(pse({"render", "a.pse", "-o", name, "--res", "2x2", "Level=3", "--seed", "5", "-f", "7"}).status, 0);
+    ASSERT_EQ(
+        pse({"render", "a.pse", "-o", name, "--res", "2x2", "Level=3", "--seed", "5", "-f", "7"})
+            .status,
+        0);
     auto attributes = picture(name).spec.attributes;
     EXPECT_TRUE(contains(attributes["pse/program"], "[Level frame 0]"));
     EXPECT_TRUE(contains(attributes["pse/knobs"], "Level=3"));
     EXPECT_EQ(attributes["pse/seed"], "5");
     EXPECT_EQ(attributes["pse/frame"], "7");
     ASSERT_EQ(pse({"render", "a.pse", "-o", name, "--res", "2x2", "--no-provenance"}).status, 0);
-    for (const auto& [key, text] : picture(name).spec.attributes) EXPECT_FALSE(key.starts_with("pse/")) << key;
+    for (const auto& [key, text] : picture(name).spec.attributes)
+      EXPECT_FALSE(key.starts_with("pse/")) << key;
   }
 }
 
 TEST_F(Render, VariablesGoWhereTheyAreSent) {
   file("a.pse", "color = [1 0 0]\nalpha = 0.5\nN = [x 1 0]\nheat = u\n");
-  ASSERT_EQ(pse({"render", "a.pse", "-o", "all.exr", "-o", "heat=heat.png", "-o", "N,heat=data.exr", "-o", "c.png",
-                 "--res", "4x4"}).status, 0);
+  ASSERT_EQ(pse({"render", "a.pse", "-o", "all.exr", "-o", "heat=heat.png", "-o", "N,heat=data.exr",
+                 "-o", "c.png", "--res", "4x4"})
+                .status,
+            0);
   EXPECT_GE(picture("all.exr").spec.find("N.X"), 0);
   const image::Image data = picture("data.exr");
   EXPECT_EQ(data.spec.find("R"), -1);
   EXPECT_EQ(data.spec.channels.size(), 4u);
   EXPECT_EQ(picture("heat.png").spec.find("G"), -1);
-  ASSERT_EQ(pse({"render", "a.pse", "-o", "few.exr", "--layers", "color,heat", "--res", "4x4"}).status, 0);
+  ASSERT_EQ(
+      pse({"render", "a.pse", "-o", "few.exr", "--layers", "color,heat", "--res", "4x4"}).status,
+      0);
   EXPECT_EQ(picture("few.exr").spec.channels.size(), 4u);
   EXPECT_EQ(pse({"render", "a.pse", "-o", "N,heat=data.png", "--res", "4x4"}).status, 2);
 }
@@ -244,8 +285,10 @@ TEST_F(Render, Statistics) {
 
 TEST_F(Render, ProgressAsJsonAndPlain) {
   file("a.pse", "color = white\n");
-  EXPECT_TRUE(contains(pse({"render", "a.pse", "-o", "a.png", "--progress", "json"}).err, "\"done\": 1.0000"));
-  EXPECT_TRUE(contains(pse({"render", "a.pse", "-o", "a.png", "--progress", "plain"}).err, "100 %"));
+  EXPECT_TRUE(contains(pse({"render", "a.pse", "-o", "a.png", "--progress", "json"}).err,
+                       "\"done\": 1.0000"));
+  EXPECT_TRUE(
+      contains(pse({"render", "a.pse", "-o", "a.png", "--progress", "plain"}).err, "100 %"));
   EXPECT_EQ(pse({"render", "a.pse", "-o", "a.png", "-q"}).err, "");
 }
 
@@ -274,7 +317,8 @@ TEST_F(Render, ASnapshotOnSigusr1) {
   // The upper half is quick; the lower half never ends.
   file("half.pse", "i = 0\nif v < 0.5\n    while i < 1e30\n        i = i + v\ncolor = [1 i 0]\n");
   file(".in", "");
-  const pid_t process = start({"render", "half.pse", "-o", "a.exr", "--res", "64x64", "--tile", "16", "-t", "1"});
+  const pid_t process =
+      start({"render", "half.pse", "-o", "a.exr", "--res", "64x64", "--tile", "16", "-t", "1"});
   for (int i = 0; i < 100 && !exists("a.snapshot.exr"); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     kill(process, SIGUSR1);
@@ -294,7 +338,8 @@ TEST_F(Render, TexturesAreFoundBesideTheProgramAndOnThePath) {
   std::filesystem::create_directory(folder() / "assets");
   std::filesystem::rename(folder() / "in.exr", folder() / "assets/wood.exr");
   file("a.pse", "color = texture(\"wood.exr\", u, v, filter=\"nearest\")\n");
-  const std::vector<std::string> words = {"render", "a.pse", "-o", "a.exr", "--res", "4x2", "--float"};
+  const std::vector<std::string> words = {"render", "a.pse", "-o",     "a.exr",
+                                          "--res",  "4x2",   "--float"};
   EXPECT_EQ(pse(words).status, 3);
   environment["PSE_PATH"] = "assets";
   const Ended ended = pse(words);

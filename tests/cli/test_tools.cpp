@@ -67,7 +67,8 @@ TEST_F(Tools, InfoOfProgramsAndImages) {
   file("a.pse", "Level = 1 [[ min = 0, help = \"how much\" ]]\ncolor = [x Level time]\n");
   Ended ended = pse({"info", "a.pse"});
   EXPECT_EQ(ended.status, 0) << ended.err;
-  for (const char* part : {"x", "time", "color[3]", "per sample", "Level=1", "how much"}) EXPECT_TRUE(contains(ended.out, part));
+  for (const char* part : {"x", "time", "color[3]", "per sample", "Level=1", "how much"})
+    EXPECT_TRUE(contains(ended.out, part));
   ended = pse({"info", "--json", "a.pse"});
   EXPECT_TRUE(contains(ended.out, "\"knob\": \"Level\""));
   ASSERT_EQ(pse({"render", "a.pse", "-o", "a.exr", "--res", "7x5"}).status, 0);
@@ -98,7 +99,10 @@ TEST_F(Tools, DocumentationOfEverythingListed) {
 TEST_F(Tools, DiffToleratesWhatItIsToldTo) {
   file("a.pse", "Level = 0\ncolor = [Level 0 0]\n");
   for (const char* level : {"0", "0.25"})
-    ASSERT_EQ(pse({"render", "a.pse", "-o", std::string(level) + ".exr", "--res", "3x3", "--float", std::string("Level=") + level}).status, 0);
+    ASSERT_EQ(pse({"render", "a.pse", "-o", std::string(level) + ".exr", "--res", "3x3", "--float",
+                   std::string("Level=") + level})
+                  .status,
+              0);
   Ended ended = pse({"diff", "0.exr", "0.25.exr", "-o", "d.exr"});
   EXPECT_EQ(ended.status, 6);
   EXPECT_TRUE(contains(ended.out, "0.25"));

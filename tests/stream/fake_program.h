@@ -1,4 +1,5 @@
-// Programs for the executor's tests whose kernel is a C++ function, so that each test knows what must come out.
+// Programs for the executor's tests whose kernel is a C++ function, so that each test knows what
+// must come out.
 #pragma once
 
 #include <functional>
@@ -10,8 +11,8 @@
 
 namespace pse::test {
 
-using SampleFunction = std::function<void(const float* const* inputs, float* const* outputs, std::int64_t count,
-                                          RunStatus& status)>;
+using SampleFunction = std::function<void(const float* const* inputs, float* const* outputs,
+                                          std::int64_t count, RunStatus& status)>;
 
 class FunctionKernel : public Kernel {
  public:
@@ -21,8 +22,8 @@ class FunctionKernel : public Kernel {
   void run_frame(FrameState& state, RunStatus& status) const override {
     if (frame_) frame_(state, status);
   }
-  void run_samples(const FrameState&, RunStatus& status, Scratch&, const float* const* inputs, float* const* outputs,
-                   std::int64_t count) const override {
+  void run_samples(const FrameState&, RunStatus& status, Scratch&, const float* const* inputs,
+                   float* const* outputs, std::int64_t count) const override {
     samples_(inputs, outputs, count, status);
   }
 
@@ -31,8 +32,9 @@ class FunctionKernel : public Kernel {
   std::function<void(FrameState&, RunStatus&)> frame_;
 };
 
-inline Program fake_program(const std::vector<ir::Input>& inputs, const std::vector<std::string>& outputs,
-                            SampleFunction samples, std::function<void(FrameState&, RunStatus&)> frame = {}) {
+inline Program fake_program(const std::vector<ir::Input>& inputs,
+                            const std::vector<std::string>& outputs, SampleFunction samples,
+                            std::function<void(FrameState&, RunStatus&)> frame = {}) {
   auto split = std::make_shared<passes::SplitModule>();
   split->module.inputs = inputs;
   for (const std::string& name : outputs) split->module.outputs.push_back({name});
@@ -43,7 +45,8 @@ inline Program fake_program(const std::vector<ir::Input>& inputs, const std::vec
 }
 
 // Copies input plane i to output plane i.
-inline void copy_planes(const float* const* inputs, float* const* outputs, std::int64_t count, RunStatus&, int planes) {
+inline void copy_planes(const float* const* inputs, float* const* outputs, std::int64_t count,
+                        RunStatus&, int planes) {
   for (int p = 0; p < planes; ++p) std::copy_n(inputs[p], count, outputs[p]);
 }
 

@@ -7,7 +7,8 @@
 namespace pse {
 namespace {
 
-const std::vector<std::string> coordinates = {"x", "y", "u", "v", "px", "py", "point.0", "point.1", "point.2"};
+const std::vector<std::string> coordinates = {"x",  "y",       "u",       "v",      "px",
+                                              "py", "point.0", "point.1", "point.2"};
 
 // The coordinates, in the order above, of one pixel.
 std::vector<float> at(const ImagePlane& plane, int column, int row) {
@@ -24,8 +25,10 @@ std::vector<float> at(const ImagePlane& plane, int column, int row) {
 TEST(ImagePlane, CornersOfAWidePicture) {
   // 8x4: aspect 2, a pixel is 1/2 wide in the plane, so the outer centres are 1/4 inside the edges.
   const ImagePlane plane{.width = 8, .height = 4};
-  EXPECT_EQ(at(plane, 0, 0), (std::vector<float>{-1.75f, 0.75f, 0.0625f, 0.875f, 0.5f, 0.5f, -1.75f, 0.75f, 0}));
-  EXPECT_EQ(at(plane, 7, 3), (std::vector<float>{1.75f, -0.75f, 0.9375f, 0.125f, 7.5f, 3.5f, 1.75f, -0.75f, 0}));
+  EXPECT_EQ(at(plane, 0, 0),
+            (std::vector<float>{-1.75f, 0.75f, 0.0625f, 0.875f, 0.5f, 0.5f, -1.75f, 0.75f, 0}));
+  EXPECT_EQ(at(plane, 7, 3),
+            (std::vector<float>{1.75f, -0.75f, 0.9375f, 0.125f, 7.5f, 3.5f, 1.75f, -0.75f, 0}));
 }
 
 TEST(ImagePlane, TheMiddlePixelOfAnOddPictureIsTheOrigin) {
@@ -34,17 +37,20 @@ TEST(ImagePlane, TheMiddlePixelOfAnOddPictureIsTheOrigin) {
 }
 
 TEST(ImagePlane, TheSampleMovesWithinItsPixel) {
-  const std::vector<float> corner = at({.width = 4, .height = 4, .sample_x = 0, .sample_y = 1}, 0, 3);
+  const std::vector<float> corner =
+      at({.width = 4, .height = 4, .sample_x = 0, .sample_y = 1}, 0, 3);
   EXPECT_EQ(corner, (std::vector<float>{-1, -1, 0, 0, 0, 4, -1, -1, 0}));
 }
 
 TEST(ImagePlane, ATransformMovesTheSceneAndNotThePixels) {
-  // Scale by 2, then move by (10, 20): the top left centre (-0.5, 0.5) of a 2x2 picture goes to (9, 21).
+  // Scale by 2, then move by (10, 20): the top left centre (-0.5, 0.5) of a 2x2 picture goes to (9,
+  // 21).
   ImagePlane plane{.width = 2, .height = 2, .transform = plane_transform({2, 0, 10, 0, 2, 20})};
   EXPECT_EQ(at(plane, 0, 0), (std::vector<float>{9, 21, 0.25f, 0.75f, 0.5f, 0.5f, 9, 21, 0}));
   // A 4x4 matrix that turns y into z lays the plane on the floor.
   plane.transform = plane_transform({1, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 5, 0, 0, 0, 1});
-  EXPECT_EQ(at(plane, 0, 0), (std::vector<float>{-0.5f, 0, 0.25f, 0.75f, 0.5f, 0.5f, -0.5f, 0, 5.5f}));
+  EXPECT_EQ(at(plane, 0, 0),
+            (std::vector<float>{-0.5f, 0, 0.25f, 0.75f, 0.5f, 0.5f, -0.5f, 0, 5.5f}));
   // The third row of a 3x3 matrix divides: w = 2 halves the point.
   plane.transform = plane_transform({1, 0, 0, 0, 1, 0, 0, 0, 2});
   EXPECT_EQ(at(plane, 1, 0)[0], 0.25f);
@@ -53,12 +59,13 @@ TEST(ImagePlane, ATransformMovesTheSceneAndNotThePixels) {
 
 TEST(ImagePlane, FrameValues) {
   ir::Module module;
-  for (const char* name : {"frame", "time", "fps", "width", "height", "aspect", "pixelsize", "pixel_freq", "seed",
-                           "begin_frame", "Knob"})
+  for (const char* name : {"frame", "time", "fps", "width", "height", "aspect", "pixelsize",
+                           "pixel_freq", "seed", "begin_frame", "Knob"})
     module.inputs.push_back({name, ir::Rate::frame});
   FrameState state;
   state.uniforms.assign(module.inputs.size(), 7);
-  set_plane_uniforms(module, {.width = 200, .height = 100, .frame = 36, .fps = 24, .seed = 5}, state);
+  set_plane_uniforms(module, {.width = 200, .height = 100, .frame = 36, .fps = 24, .seed = 5},
+                     state);
   // pixel_freq is the Nyquist frequency: half a cycle per pixel of 0.02.
   EXPECT_EQ(state.uniforms, (std::vector<float>{36, 1.5f, 24, 200, 100, 2, 0.02f, 25, 5, 1, 7}));
 }
@@ -67,7 +74,8 @@ TEST(ImagePlane, EveryNameItListsIsFilled) {
   ir::Module module;
   for (const StreamName& name : image_plane_names())
     for (int c = 0; c < name.components; ++c)
-      module.inputs.push_back({name.components == 1 ? name.name : name.name + "." + std::to_string(c), name.rate});
+      module.inputs.push_back(
+          {name.components == 1 ? name.name : name.name + "." + std::to_string(c), name.rate});
   FrameState state;
   state.uniforms.assign(module.inputs.size(), -99);
   const ImagePlane plane{.width = 4, .height = 4};

@@ -1,4 +1,5 @@
-// Segments of a program over lists of samples: gathering, scattering and neighbours, with cases worked out by hand.
+// Segments of a program over lists of samples: gathering, scattering and neighbours, with cases
+// worked out by hand.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -33,7 +34,8 @@ TEST(NeighbourTable, TheEightNeighboursOfTheMiddleOfAThreeByThree) {
 
 TEST(NeighbourTable, SamplesOutsideTheListAreNobodysNeighbours) {
   // An L in the order of a shuffle, with negative coordinates:  (-1,-1)
-  //                                                             (-1, 0) (0, 0)        and far away (5, 0)
+  //                                                             (-1, 0) (0, 0)        and far away
+  //                                                             (5, 0)
   const SampleList list = {{0, 0, 10}, {5, 0, 11}, {-1, -1, 12}, {-1, 0, 13}};
   const NeighbourTable table(list);
   EXPECT_EQ(table.of(0, left), 3);
@@ -47,7 +49,8 @@ TEST(NeighbourTable, SamplesOutsideTheListAreNobodysNeighbours) {
 
 TEST(NeighbourTable, ExtremeCoordinatesDoNotWrap) {
   const int low = std::numeric_limits<int>::min(), high = std::numeric_limits<int>::max();
-  const NeighbourTable table(SampleList{{high, 0, 0}, {low, 0, 1}, {low, 1, 2}, {0, high, 3}, {0, low, 4}});
+  const NeighbourTable table(
+      SampleList{{high, 0, 0}, {low, 0, 1}, {low, 1, 2}, {0, high, 3}, {0, low, 4}});
   EXPECT_EQ(table.of(0, right), -1);
   EXPECT_EQ(table.of(1, left), -1);
   EXPECT_EQ(table.of(1, down), 2);
@@ -87,7 +90,8 @@ TEST(RunList, GathersAndScattersByPlaceAndLeavesTheRestAlone) {
       const float* inputs[] = {a.data(), nullptr};
       float* outputs[] = {out.data(), nullptr};
       RunStatus status;
-      const ListResult result = run_list(segment, state, list, inputs, outputs, {threads, batch}, status);
+      const ListResult result =
+          run_list(segment, state, list, inputs, outputs, {threads, batch}, status);
       EXPECT_EQ(result.end, RunEnd::finished);
       EXPECT_EQ(out, (std::vector<float>{102, -1, -1, -1, 110, 112}));
     }
@@ -110,7 +114,8 @@ TEST(RunList, ReportsTheFirstFailedSampleOfTheList) {
   }
 }
 
-// |x| as the chapter recasts it: a condition, both sides over their own lists, the two joined in one plane.
+// |x| as the chapter recasts it: a condition, both sides over their own lists, the two joined in
+// one plane.
 TEST(RunList, TwoSidesOfAConditionalMeetInOnePlane) {
   const auto unary = [](float (*f)(float)) {
     return test::fake_program({{"x"}}, {"r"}, [f](auto in, auto out, auto count, auto&) {
@@ -131,12 +136,14 @@ TEST(RunList, TwoSidesOfAConditionalMeetInOnePlane) {
     run_list(segment, state, list, inputs, outputs, {}, status);
   };
   run(condition, all, side);
-  const SampleList negative = select_samples(all, side.data(), true), rest = select_samples(all, side.data(), false);
+  const SampleList negative = select_samples(all, side.data(), true),
+                   rest = select_samples(all, side.data(), false);
   run(negate, negative, result);
   run(keep, rest, result);
   EXPECT_EQ(result, (std::vector<float>{3, 2, 1, 0, 1, 2}));
 
-  // Of the top row (-3 -2 -1) none has a neighbour below within its side; the bottom row is (0 1 2).
+  // Of the top row (-3 -2 -1) none has a neighbour below within its side; the bottom row is (0 1
+  // 2).
   ASSERT_EQ(negative.size(), 3u);
   const NeighbourTable table(negative);
   EXPECT_EQ(table.of(1, left), 0);

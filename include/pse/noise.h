@@ -1,12 +1,14 @@
-// Noise for C++ programs: the numbers that the language's functions of the same names give, on every machine.
-// Positions are in lattice cells. A seed of 0 is the reference noise; any other number gives another noise.
+// Noise for C++ programs: the numbers that the language's functions of the same names give, on
+// every machine. Positions are in lattice cells. A seed of 0 is the reference noise; any other
+// number gives another noise.
 #pragma once
 
 #include <array>
 
 namespace pse {
 
-// The signed noise of 2002 in one to four dimensions: in [-1.1, 1.1], 0 at whole positions, period 256.
+// The signed noise of 2002 in one to four dimensions: in [-1.1, 1.1], 0 at whole positions, period
+// 256.
 float noise(float x, float seed = 0);
 float noise(const std::array<float, 2>& p, float seed = 0);
 float noise(const std::array<float, 3>& p, float seed = 0);

@@ -1,8 +1,9 @@
-// The table of builtins as a whole: finding entries, binding arguments to parameters, emitting calls.
+// The table of builtins as a whole: finding entries, binding arguments to parameters, emitting
+// calls.
 #include "lower/builtins.h"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 #include <stdexcept>
 
 #include "lower/builtin_table.h"
@@ -14,7 +15,8 @@ namespace {
 const std::vector<BuiltinEntry>& entries() {
   static const std::vector<BuiltinEntry> list = [] {
     std::vector<BuiltinEntry> all;
-    for (const auto group : {math_builtins(), vector_builtins(), noise_builtins(), random_builtins()}) {
+    for (const auto group :
+         {math_builtins(), vector_builtins(), noise_builtins(), random_builtins()}) {
       all.insert(all.end(), group.begin(), group.end());
     }
     return all;
@@ -24,7 +26,8 @@ const std::vector<BuiltinEntry>& entries() {
 
 const BuiltinEntry* find_entry(std::string_view name) {
   const auto& all = entries();
-  const auto found = std::ranges::find(all, name, [](const BuiltinEntry& e) { return e.builtin.name; });
+  const auto found =
+      std::ranges::find(all, name, [](const BuiltinEntry& e) { return e.builtin.name; });
   if (found == all.end()) return nullptr;
   // Another name stands for the entry that it is the same as.
   return found->builtin.same_as.empty() ? &*found : find_entry(found->builtin.same_as);
@@ -44,13 +47,16 @@ std::vector<Parameter> parameters_of(std::string_view text) {
     std::string_view part = text.substr(0, comma);
     text.remove_prefix(std::min(comma + 1, text.size()));
     part.remove_prefix(std::min(part.find_first_not_of(' '), part.size()));
-    Parameter parameter{part.substr(0, part.find_first_of(" =.")), part.contains('='), part.contains("...")};
+    Parameter parameter{part.substr(0, part.find_first_of(" =.")), part.contains('='),
+                        part.contains("...")};
     list.push_back(parameter);
   }
   return list;
 }
 
-std::string usage(const Builtin& builtin) { return fmt::format("{}({})", builtin.name, builtin.parameters); }
+std::string usage(const Builtin& builtin) {
+  return fmt::format("{}({})", builtin.name, builtin.parameters);
+}
 
 // Puts each argument at its parameter.
 std::expected<BoundCall, std::string> bind(const Builtin& builtin, const BuiltinCall& call) {
@@ -58,14 +64,17 @@ std::expected<BoundCall, std::string> bind(const Builtin& builtin, const Builtin
   BoundCall bound{builtin.name, std::vector<Components>(parameters.size())};
   std::vector<bool> given(parameters.size());
 
-  // By position: a parameter that takes many leaves one argument for each required parameter after it.
+  // By position: a parameter that takes many leaves one argument for each required parameter after
+  // it.
   std::size_t next = 0;
   for (std::size_t p = 0; p < parameters.size() && next < call.arguments.size(); ++p) {
     std::size_t take = 1;
     if (parameters[p].many) {
       const auto required = static_cast<std::size_t>(std::count_if(
-          parameters.begin() + static_cast<std::ptrdiff_t>(p) + 1, parameters.end(), [&](const Parameter& q) {
-            return !q.optional && std::ranges::none_of(call.named, [&](const auto& n) { return n.first == q.name; });
+          parameters.begin() + static_cast<std::ptrdiff_t>(p) + 1, parameters.end(),
+          [&](const Parameter& q) {
+            return !q.optional && std::ranges::none_of(
+                                      call.named, [&](const auto& n) { return n.first == q.name; });
           }));
       const std::size_t left = call.arguments.size() - next;
       take = left > required ? left - required : 1;
@@ -74,7 +83,8 @@ std::expected<BoundCall, std::string> bind(const Builtin& builtin, const Builtin
     }
     given[p] = true;
     for (std::size_t i = 0; i < take; ++i, ++next) {
-      bound.arguments[p].insert(bound.arguments[p].end(), call.arguments[next].begin(), call.arguments[next].end());
+      bound.arguments[p].insert(bound.arguments[p].end(), call.arguments[next].begin(),
+                                call.arguments[next].end());
     }
   }
   if (next < call.arguments.size()) {
@@ -88,30 +98,35 @@ std::expected<BoundCall, std::string> bind(const Builtin& builtin, const Builtin
       return std::unexpected(fmt::format("{} has no parameter '{}'", usage(builtin), name));
     }
     const auto p = static_cast<std::size_t>(found - parameters.begin());
-    if (given[p]) return std::unexpected(fmt::format("'{}' is given twice to {}", name, builtin.name));
+    if (given[p])
+      return std::unexpected(fmt::format("'{}' is given twice to {}", name, builtin.name));
     given[p] = true;
     bound.arguments[p] = components;
   }
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     if (!given[p] && !parameters[p].optional) {
-      return std::unexpected(fmt::format("'{}' is missing in the call of {}", parameters[p].name, usage(builtin)));
+      return std::unexpected(
+          fmt::format("'{}' is missing in the call of {}", parameters[p].name, usage(builtin)));
     }
     if (given[p] && bound.arguments[p].empty()) {
-      return std::unexpected(fmt::format("'{}' of {} has no components", parameters[p].name, builtin.name));
+      return std::unexpected(
+          fmt::format("'{}' of {} has no components", parameters[p].name, builtin.name));
     }
   }
   return bound;
 }
 
 // Component by component; arguments of one component are repeated.
-std::expected<Components, std::string> emit_elementwise(const BuiltinScope& scope, const BuiltinEntry& entry,
+std::expected<Components, std::string> emit_elementwise(const BuiltinScope& scope,
+                                                        const BuiltinEntry& entry,
                                                         const BoundCall& bound) {
   std::size_t length = 1;
   for (const Components& argument : bound.arguments) {
     if (argument.size() == 1) continue;
     if (length != 1 && argument.size() != length) {
-      return std::unexpected(fmt::format("{} takes vectors of one length, and these have {} and {} components",
-                                         bound.name, length, argument.size()));
+      return std::unexpected(
+          fmt::format("{} takes vectors of one length, and these have {} and {} components",
+                      bound.name, length, argument.size()));
     }
     length = argument.size();
   }
@@ -151,7 +166,8 @@ const Builtin* find_builtin(std::string_view name) {
   return found == list.end() ? nullptr : &*found;
 }
 
-std::expected<Components, std::string> BuiltinEmitter::emit(ir::Builder& builder, const BuiltinCall& call) {
+std::expected<Components, std::string> BuiltinEmitter::emit(ir::Builder& builder,
+                                                            const BuiltinCall& call) {
   const BuiltinEntry* entry = find_entry(call.name);
   if (!entry) return std::unexpected(fmt::format("there is no builtin function '{}'", call.name));
   const auto bound = bind(entry->builtin, call);
@@ -194,7 +210,8 @@ std::vector<IrFloat> BuiltinScope::call(std::string_view key, std::span<const Ir
     for (std::size_t i = 0; i < ints.size(); ++i) {
       int_params.emplace_back(inner, inner.add_param(function.body, ir::Type::i32));
     }
-    for (const IrFloat& result : body(float_params, int_params)) function.body.yields.push_back(place(inner, result));
+    for (const IrFloat& result : body(float_params, int_params))
+      function.body.yields.push_back(place(inner, result));
     found = emitter_->functions_.emplace(key, index).first;
   }
 
@@ -202,7 +219,8 @@ std::vector<IrFloat> BuiltinScope::call(std::string_view key, std::span<const Ir
   std::vector<ir::Value> operands;
   for (const IrFloat& argument : floats) operands.push_back(place(*builder_, argument));
   for (const IrInt& argument : ints) operands.push_back(place(*builder_, argument));
-  const std::size_t results = module.functions[static_cast<std::size_t>(found->second)].body.yields.size();
+  const std::size_t results =
+      module.functions[static_cast<std::size_t>(found->second)].body.yields.size();
   const std::vector<ir::Type> types(results, ir::Type::f32);
   std::vector<IrFloat> result;
   for (const ir::Value value : builder_->emit_multi(ir::Op::call, operands, types, found->second)) {

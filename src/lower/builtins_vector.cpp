@@ -17,10 +17,12 @@ IrFloat inner_product(std::span<const IrFloat> a, std::span<const IrFloat> b) {
 
 Result dot(const BuiltinScope& scope, const BoundCall& call) {
   if (call.arguments[0].size() != call.arguments[1].size()) {
-    return std::unexpected(fmt::format("dot takes two vectors of one length, and these have {} and {} components",
-                                       call.arguments[0].size(), call.arguments[1].size()));
+    return std::unexpected(
+        fmt::format("dot takes two vectors of one length, and these have {} and {} components",
+                    call.arguments[0].size(), call.arguments[1].size()));
   }
-  return scope.values(std::array{inner_product(scope.numbers(call.arguments[0]), scope.numbers(call.arguments[1]))});
+  return scope.values(std::array{
+      inner_product(scope.numbers(call.arguments[0]), scope.numbers(call.arguments[1]))});
 }
 
 Result cross(const BuiltinScope& scope, const BoundCall& call) {
@@ -29,7 +31,9 @@ Result cross(const BuiltinScope& scope, const BoundCall& call) {
   }
   const auto a = scope.numbers(call.arguments[0]);
   const auto b = scope.numbers(call.arguments[1]);
-  const auto component = [&](std::size_t i, std::size_t j) { return fma(a[i], b[j], -(a[j] * b[i])); };
+  const auto component = [&](std::size_t i, std::size_t j) {
+    return fma(a[i], b[j], -(a[j] * b[i]));
+  };
   return scope.values(std::array{component(1, 2), component(2, 0), component(0, 1)});
 }
 
@@ -50,12 +54,17 @@ Result product(const BuiltinScope& scope, const BoundCall& call) {
 }
 
 constexpr BuiltinEntry list[] = {
-    {.builtin = {"dot", "vector", "a, b", ResultShape::number, "the inner product of two vectors", ""}, .call = dot},
+    {.builtin = {"dot", "vector", "a, b", ResultShape::number, "the inner product of two vectors",
+                 ""},
+     .call = dot},
     {.builtin = {"cross", "vector", "a, b", ResultShape::vector3,
-                 "the vector at right angles to a and b, as long as their parallelogram is large", ""},
+                 "the vector at right angles to a and b, as long as their parallelogram is large",
+                 ""},
      .call = cross},
-    {.builtin = {"sum", "vector", "v...", ResultShape::number, "the sum of all components", ""}, .call = sum},
-    {.builtin = {"product", "vector", "v...", ResultShape::number, "the product of all components", ""},
+    {.builtin = {"sum", "vector", "v...", ResultShape::number, "the sum of all components", ""},
+     .call = sum},
+    {.builtin = {"product", "vector", "v...", ResultShape::number, "the product of all components",
+                 ""},
      .call = product},
 };
 

@@ -32,9 +32,15 @@ std::array<float, N> slopes(const std::array<float, N>& p, float seed) {
 }  // namespace
 
 float noise(float x, float seed) { return num::improved_noise(std::array{x}, seeded<1>(seed)); }
-float noise(const std::array<float, 2>& p, float seed) { return num::improved_noise(p, seeded<2>(seed)); }
-float noise(const std::array<float, 3>& p, float seed) { return num::improved_noise(p, seeded<3>(seed)); }
-float noise(const std::array<float, 4>& p, float seed) { return num::improved_noise(p, seeded<4>(seed)); }
+float noise(const std::array<float, 2>& p, float seed) {
+  return num::improved_noise(p, seeded<2>(seed));
+}
+float noise(const std::array<float, 3>& p, float seed) {
+  return num::improved_noise(p, seeded<3>(seed));
+}
+float noise(const std::array<float, 4>& p, float seed) {
+  return num::improved_noise(p, seeded<4>(seed));
+}
 
 float pnoise(const std::array<float, 2>& p, const std::array<float, 2>& period, float seed) {
   return periodic(p, period, seed);
@@ -54,8 +60,12 @@ std::array<float, 3> vnoise(const std::array<float, 3>& p, float seed) {
   return num::improved_vector_noise(p, seeded<3>(seed));
 }
 
-float noise1985(const std::array<float, 3>& p, float seed) { return num::noise_1985(p, seeded<3>(seed)); }
-float noise1989(const std::array<float, 3>& p, float seed) { return num::noise_1989(p, seeded<3>(seed)); }
+float noise1985(const std::array<float, 3>& p, float seed) {
+  return num::noise_1985(p, seeded<3>(seed));
+}
+float noise1989(const std::array<float, 3>& p, float seed) {
+  return num::noise_1989(p, seeded<3>(seed));
+}
 float book_noise(const std::array<float, 3>& p) { return num::book_noise(p); }
 
 }  // namespace pse

@@ -1,6 +1,7 @@
-// The noise of the chapter's listing, bit for bit what that C program computes in float, kept for pictures made with it.
-// Its defects are kept too: the shuffle steps by two from one past the table, so the table is no permutation; adding
-// 10000 quantises positions to 2^-10 and fails below -10000. New work wants improved.h.
+// The noise of the chapter's listing, bit for bit what that C program computes in float, kept for
+// pictures made with it. Its defects are kept too: the shuffle steps by two from one past the
+// table, so the table is no permutation; adding 10000 quantises positions to 2^-10 and fails below
+// -10000. New work wants improved.h.
 #pragma once
 
 #include <array>
@@ -11,8 +12,9 @@
 
 namespace pse::num {
 
-// Signed noise in three dimensions, 0 at lattice points; found within [-1.04, 1.08]. No contraction: each product and
-// each sum is rounded, as there. (Products that the listing takes in double are exact for the positions it can tell apart.)
+// Signed noise in three dimensions, 0 at lattice points; found within [-1.04, 1.08]. No
+// contraction: each product and each sum is rounded, as there. (Products that the listing takes in
+// double are exact for the positions it can tell apart.)
 template <class F>
 F book_noise(const std::array<F, 3>& point) {
   using B = BaseOf<F>;

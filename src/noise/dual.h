@@ -1,5 +1,6 @@
-// Numbers with derivatives: a value and its N partial derivatives, for Dnoise and filter widths. A derivative known to be
-// zero is absent rather than stored, so no operation is spent on it and no 0 * infinity can arise.
+// Numbers with derivatives: a value and its N partial derivatives, for Dnoise and filter widths. A
+// derivative known to be zero is absent rather than stored, so no operation is spent on it and no 0
+// * infinity can arise.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
-// Exponentials and logarithms. Few operations, no tables; polynomials found by minimax search over the reduced range.
-// Errors are the greatest found over dense, random and edge arguments (tests/noise/math_test.cpp); an ulp is the spacing
-// of floats at the exact result.
+// Exponentials and logarithms. Few operations, no tables; polynomials found by minimax search over
+// the reduced range. Errors are the greatest found over dense, random and edge arguments
+// (tests/noise/math_test.cpp); an ulp is the spacing of floats at the exact result.
 #pragma once
 
 #include "noise/number.h"
@@ -54,7 +54,8 @@ F exp2(const F& x) {
   const F kept = cut(x, -151.0f, 129.0f);
   const F n = round(kept);
   const F r = kept - n;
-  const F q = polynomial(r, {0.693147182f, 0.240226507f, 0.0555035807f, 0.00961808022f, 0.00133916701f, 0.000154546928f});
+  const F q = polynomial(r, {0.693147182f, 0.240226507f, 0.0555035807f, 0.00961808022f,
+                             0.00133916701f, 0.000154546928f});
   return scale_by_power(fma(r, q, F(1.0f)), n);
 }
 
@@ -63,7 +64,8 @@ template <class F>
 F expm1(const F& x) {
   F n;
   const F r = exp_reduce(cut(x, -30.0f, 89.0f), n);
-  const F q = polynomial(r, {0.5f, 0.166666672f, 0.0416664816f, 0.00833321176f, 0.00139333541f, 0.000199404138f});
+  const F q = polynomial(
+      r, {0.5f, 0.166666672f, 0.0416664816f, 0.00833321176f, 0.00139333541f, 0.000199404138f});
   const F e = fma(r * r, q, r);
   // 2^n (1 + e) - 1 by way of 2^(n-1), which is in range for every n.
   const F s = power_of_two(to_int(n) - 1);
@@ -89,12 +91,13 @@ Split<F> split(const F& x) {
 // log(1 + f) - f for 1 + f in [sqrt(1/2), sqrt(2)).
 template <class F>
 F log_tail(const F& f) {
-  const F q = polynomial(f, {-0.5f, 0.333333433f, -0.250008285f, 0.200006127f, -0.166226909f, 0.142117321f, -0.131749466f,
-                             0.127104208f, -0.0754154325f});
+  const F q = polynomial(f, {-0.5f, 0.333333433f, -0.250008285f, 0.200006127f, -0.166226909f,
+                             0.142117321f, -0.131749466f, 0.127104208f, -0.0754154325f});
   return (f * f) * q;
 }
 
-// The value of a logarithm that was computed as if 0 < x < infinity: the limits, and NaN below 0 and for NaN.
+// The value of a logarithm that was computed as if 0 < x < infinity: the limits, and NaN below 0
+// and for NaN.
 template <class F>
 F log_limits(const F& x, const F& computed) {
   const F below = select(x == 0.0f, F(-infinity), F(not_a_number));
@@ -109,7 +112,8 @@ F log(const F& x) {
   return log_limits(x, fma(s.e, F(ln_of_2), s.f + rest));
 }
 
-// The logarithm to base 2. Error below 1.2 ulp; exact for powers of 2; -infinity at 0; NaN below 0 and for NaN.
+// The logarithm to base 2. Error below 1.2 ulp; exact for powers of 2; -infinity at 0; NaN below 0
+// and for NaN.
 template <class F>
 F log2(const F& x) {
   const Split<F> s = split(x);
@@ -121,11 +125,13 @@ F log2(const F& x) {
 template <class F>
 F log10(const F& x) {
   const Split<F> s = split(x);
-  const F rest = fma(s.e, F(log10_of_2_rest), fma(s.f, F(log10_of_e_rest), log_tail(s.f) * log10_of_e));
+  const F rest =
+      fma(s.e, F(log10_of_2_rest), fma(s.f, F(log10_of_e_rest), log_tail(s.f) * log10_of_e));
   return log_limits(x, fma(s.e, F(log10_of_2), fma(s.f, F(log10_of_e), rest)));
 }
 
-// log(1 + x), precise near 0. Error below 1.5 ulp; keeps -0; -infinity at -1; NaN below -1 and for NaN.
+// log(1 + x), precise near 0. Error below 1.5 ulp; keeps -0; -infinity at -1; NaN below -1 and for
+// NaN.
 template <class F>
 F log1p(const F& x) {
   using I = IntOf<F>;

@@ -19,7 +19,8 @@ template <class F>
 F sinh(const F& x) {
   const F a = abs(x);
   const F s = a * a;
-  const F near_value = fma(s * a, polynomial(s, {0.166666672f, 0.00833331514f, 0.000198416659f, 2.78998391e-06f}), a);
+  const F near_value = fma(
+      s * a, polynomial(s, {0.166666672f, 0.00833331514f, 0.000198416659f, 2.78998391e-06f}), a);
   const F e = half_exp(a);
   const F value = select(a < 1.0f, near_value, e - 0.25f / e);
   return select(x < 0.0f, -value, select(x == 0.0f, x, value));
@@ -37,8 +38,10 @@ template <class F>
 F tanh(const F& x) {
   const F a = abs(x);
   const F s = a * a;
-  const F near_value =
-      fma(s * a, polynomial(s, {-0.333332986f, 0.133319363f, -0.0537847169f, 0.0207986254f, -0.00589796668f}), a);
+  const F near_value = fma(
+      s * a,
+      polynomial(s, {-0.333332986f, 0.133319363f, -0.0537847169f, 0.0207986254f, -0.00589796668f}),
+      a);
   const F e = exp(2.0f * a);
   const F far_value = 1.0f - 2.0f / (e + 1.0f);
   const F value = select(a < 0.6f, near_value, far_value);

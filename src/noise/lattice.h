@@ -1,6 +1,7 @@
-// What the noise functions share: where a point lies in its cell of the integer lattice, how the cell's corners are
-// hashed, and how what the corners say is interpolated. Chapter, "Constructing the noise function".
-// Corner c of a cell is its low corner moved by one along x where bit 0 of c is set, along y for bit 1, and so on.
+// What the noise functions share: where a point lies in its cell of the integer lattice, how the
+// cell's corners are hashed, and how what the corners say is interpolated. Chapter, "Constructing
+// the noise function". Corner c of a cell is its low corner moved by one along x where bit 0 of c
+// is set, along y for bit 1, and so on.
 #pragma once
 
 #include <array>
@@ -13,8 +14,8 @@
 
 namespace pse::num {
 
-// What a call may ask for beside the position. A period is a whole number from 1 to 256; anything else is rounded and
-// cut to that, and 0 or less means 256. A key is a mixed seed (noise/seed.h).
+// What a call may ask for beside the position. A period is a whole number from 1 to 256; anything
+// else is rounded and cut to that, and 0 or less means 256. A key is a mixed seed (noise/seed.h).
 template <class F, std::size_t N>
 struct NoiseOptions {
   std::optional<std::array<BaseOf<F>, N>> period;
@@ -47,14 +48,18 @@ Dual<F, N> cubic_fade(const Dual<F, N>& t) {
 // A point's cell and the point's place in it.
 template <class F, std::size_t N>
 struct Cell {
-  std::array<BaseOf<F>, N> corner;            // the cell's low corner, a whole number
-  std::array<std::array<F, N>, 2> offset;     // from the low and from the high corner
+  std::array<BaseOf<F>, N> corner;         // the cell's low corner, a whole number
+  std::array<std::array<F, N>, 2> offset;  // from the low and from the high corner
 };
 
 template <class F>
-BaseOf<F> base_floor(const F& x) { return floor(x); }
+BaseOf<F> base_floor(const F& x) {
+  return floor(x);
+}
 template <class F, std::size_t N>
-F base_floor(const Dual<F, N>& x) { return floor(x.value); }
+F base_floor(const Dual<F, N>& x) {
+  return floor(x.value);
+}
 
 template <class F, std::size_t N>
 Cell<F, N> cell_of(const std::array<F, N>& point) {
@@ -67,12 +72,13 @@ Cell<F, N> cell_of(const std::array<F, N>& point) {
   return cell;
 }
 
-// One axis of a cell's corners as bytes, four corners to a word: byte k of axis 0 is for corner k of 0 1 0 1, of axis 1
-// for 0 0 1 1; a later axis has a word for its low and one for its high corners.
+// One axis of a cell's corners as bytes, four corners to a word: byte k of axis 0 is for corner k
+// of 0 1 0 1, of axis 1 for 0 0 1 1; a later axis has a word for its low and one for its high
+// corners.
 template <class I>
 struct AxisBytes {
-  I low;                 // axes 0 and 1: the only word
-  std::optional<I> high; // a later axis with a period; without one it is low + 1 in each byte
+  I low;                  // axes 0 and 1: the only word
+  std::optional<I> high;  // a later axis with a period; without one it is low + 1 in each byte
 };
 
 inline constexpr std::int32_t every_byte = 0x01010101;
@@ -87,7 +93,8 @@ AxisBytes<IntOf<F>> axis_bytes(std::size_t axis, const F& corner) {
   return {repeated, {}};
 }
 
-// A cell's low and high corner on one axis, counted modulo a period of 1 to `longest`; 0 or less means the longest.
+// A cell's low and high corner on one axis, counted modulo a period of 1 to `longest`; 0 or less
+// means the longest.
 template <class F>
 std::array<IntOf<F>, 2> wrap(const F& corner, const F& period, float longest) {
   const F rounded = round(period);
@@ -114,10 +121,11 @@ I key_bytes(const I& key, int level) {
   return ((key >> I(8 * level)) & I(255)) * I(every_byte);
 }
 
-// One step of the fold through a permutation; with a key, `rounds` more steps with a byte of the key mixed in before
-// each, so that every key has a permutation of its own. Key 0 changes nothing.
+// One step of the fold through a permutation; with a key, `rounds` more steps with a byte of the
+// key mixed in before each, so that every key has a permutation of its own. Key 0 changes nothing.
 template <class I>
-I permute(const ByteTable& table, const I& word, const std::optional<I>& key, int level, int rounds) {
+I permute(const ByteTable& table, const I& word, const std::optional<I>& key, int level,
+          int rounds) {
   I result = lookup(table, word);
   for (int i = 0; key && i < rounds; ++i) {
     result = select(*key == I(0), result, lookup(table, result ^ key_bytes(*key, level + i)));
@@ -139,11 +147,13 @@ std::array<F, N> cubic_fades(const Cell<F, N>& cell) {
   return fade;
 }
 
-// The hashes of a cell's corners, a byte each, four to a word: corner c in byte c mod 4 of word c / 4.
+// The hashes of a cell's corners, a byte each, four to a word: corner c in byte c mod 4 of word c
+// / 4.
 template <class F, std::size_t N>
 using CornerHashes = std::array<IntOf<F>, N <= 2 ? 1 : (std::size_t{1} << (N - 2))>;
 
-// Chapter, "To quickly index into G": fold the coordinates through the permutation, one axis after the other.
+// Chapter, "To quickly index into G": fold the coordinates through the permutation, one axis after
+// the other.
 template <class F, std::size_t N>
 CornerHashes<F, N> hash_corners(const std::array<F, N>& corner, const NoiseOptions<F, N>& options,
                                 const ByteTable& table = permutation) {
@@ -154,15 +164,17 @@ CornerHashes<F, N> hash_corners(const std::array<F, N>& corner, const NoiseOptio
   std::size_t count = 1;
   int level = 0;
   for (std::size_t axis = 0; axis < N; ++axis) {
-    const AxisBytes<I> bytes = options.period ? axis_bytes<F>(axis, corner[axis], (*options.period)[axis])
-                                              : axis_bytes<F>(axis, corner[axis]);
+    const AxisBytes<I> bytes = options.period
+                                   ? axis_bytes<F>(axis, corner[axis], (*options.period)[axis])
+                                   : axis_bytes<F>(axis, corner[axis]);
     // The axis joins the words so far; from axis 2 on that doubles their number.
     if (axis == 0) words[0] = bytes.low;
     if (axis == 1) words[0] = bytes_add(words[0], bytes.low);
     if (axis >= 2) {
       for (std::size_t i = 0; i < count; ++i) {
         const I low = bytes_add(words[i], bytes.low);
-        words[i + count] = bytes.high ? bytes_add(words[i], *bytes.high) : bytes_add(low, I(every_byte));
+        words[i + count] =
+            bytes.high ? bytes_add(words[i], *bytes.high) : bytes_add(low, I(every_byte));
         words[i] = low;
       }
       count *= 2;
@@ -181,8 +193,9 @@ I corner_hash(const std::array<I, Count>& words, std::size_t c) {
   return c % 4 == 0 ? words[c / 4] : words[c / 4] >> I(static_cast<std::int32_t>(8 * (c % 4)));
 }
 
-// Interpolates what the 2^N corners say, first along x, then y, and so on. `at(c, start)` is what corner c says,
-// plus *start where there is one; the difference between two neighbours is taken inside it, which saves an operation for each pair.
+// Interpolates what the 2^N corners say, first along x, then y, and so on. `at(c, start)` is what
+// corner c says, plus *start where there is one; the difference between two neighbours is taken
+// inside it, which saves an operation for each pair.
 template <class F, std::size_t N, class AtCorner>
 F interpolate(const std::array<F, N>& fade, const AtCorner& at) {
   constexpr std::size_t pairs = std::size_t{1} << (N - 1);
@@ -194,12 +207,14 @@ F interpolate(const std::array<F, N>& fade, const AtCorner& at) {
     values[i] = fma(fade[0], step, low);
   }
   for (std::size_t axis = 1; axis < N; ++axis) {
-    for (std::size_t i = 0; i < pairs >> axis; ++i) values[i] = lerp(fade[axis], values[2 * i], values[2 * i + 1]);
+    for (std::size_t i = 0; i < pairs >> axis; ++i)
+      values[i] = lerp(fade[axis], values[2 * i], values[2 * i + 1]);
   }
   return values[0];
 }
 
-// The inner product of corner c's gradient with the way from that corner to the point, plus *start where there is one.
+// The inner product of corner c's gradient with the way from that corner to the point, plus *start
+// where there is one.
 template <class F, std::size_t N>
 F slope_at(const Cell<F, N>& cell, std::size_t c, const std::array<BaseOf<F>, N>& corner_gradient,
            const F* start) {

@@ -1,5 +1,6 @@
-// The tables of the noise family that a small program makes: those of 1989 and those of the chapter's listing.
-// Each is made on first use, from integers by correctly rounded operations, so it is the same on every machine.
+// The tables of the noise family that a small program makes: those of 1989 and those of the
+// chapter's listing. Each is made on first use, from integers by correctly rounded operations, so
+// it is the same on every machine.
 #include <cmath>
 #include <numeric>
 
@@ -44,7 +45,8 @@ struct SphereTables : VectorTables<N> {
         square = std::inner_product(v.begin(), v.end(), v.begin(), 0.0);
       } while (square > 1.0 || square < 1e-4);
       const double length = N == 1 ? 1.0 : std::sqrt(square);
-      for (std::size_t axis = 0; axis < N; ++axis) this->entries[axis][i] = static_cast<float>(v[axis] / length);
+      for (std::size_t axis = 0; axis < N; ++axis)
+        this->entries[axis][i] = static_cast<float>(v[axis] / length);
     }
   }
 };
@@ -54,7 +56,8 @@ class GlibcRandom {
  public:
   GlibcRandom() {
     state_[0] = 1;
-    for (std::size_t i = 1; i < 31; ++i) state_[i] = static_cast<std::uint32_t>(16807ull * state_[i - 1] % 2147483647u);
+    for (std::size_t i = 1; i < 31; ++i)
+      state_[i] = static_cast<std::uint32_t>(16807ull * state_[i - 1] % 2147483647u);
     for (int i = 0; i < 310; ++i) step();
   }
   std::uint32_t next() { return step() >> 1; }
@@ -76,12 +79,14 @@ struct BookTables : VectorTables<3> {
 
   BookTables() : VectorTables({"book.x", "book.y", "book.z"}) {
     GlibcRandom random;
-    // Gradients in float, as there: a point in the cube until one is in the sphere, then onto the sphere.
+    // Gradients in float, as there: a point in the cube until one is in the sphere, then onto the
+    // sphere.
     for (std::size_t i = 0; i < 256; ++i) {
       std::array<float, 3> v;
       float square = 0;
       do {
-        for (float& component : v) component = static_cast<float>(static_cast<int>(random.next() % 512) - 256) / 256.0f;
+        for (float& component : v)
+          component = static_cast<float>(static_cast<int>(random.next() % 512) - 256) / 256.0f;
         square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
       } while (square > 1.0f);
       for (std::size_t axis = 0; axis < 3; ++axis) entries[axis][i] = v[axis] / std::sqrt(square);
@@ -107,10 +112,14 @@ std::span<const FloatTable> sphere_tables(std::size_t dimensions) {
   static const SphereTables<3> three({"sphere.x.3", "sphere.y.3", "sphere.z.3"});
   static const SphereTables<4> four({"sphere.x.4", "sphere.y.4", "sphere.z.4", "sphere.w.4"});
   switch (dimensions) {
-    case 1: return one.tables;
-    case 2: return two.tables;
-    case 3: return three.tables;
-    default: return four.tables;
+    case 1:
+      return one.tables;
+    case 2:
+      return two.tables;
+    case 3:
+      return three.tables;
+    default:
+      return four.tables;
   }
 }
 

@@ -1,4 +1,5 @@
-// The math library. Every function is one template body for float, and for the values that write IR; see number.h.
+// The math library. Every function is one template body for float, and for the values that write
+// IR; see number.h.
 #pragma once
 
 #include "noise/exp_log.h"

@@ -1,7 +1,8 @@
-// The noise of 1985 in one to four dimensions. 1985 paper, "Noise()": every lattice point has a value and a gradient, a
-// linear equation; between lattice points these equations are interpolated, by the cubic curve, in x, then y, then z.
-// Unlike the later ones it is not 0 at lattice points. The hash mixes 32-bit lattice coordinates, so nothing repeats
-// within 2^32 cells unless a period is asked for.
+// The noise of 1985 in one to four dimensions. 1985 paper, "Noise()": every lattice point has a
+// value and a gradient, a linear equation; between lattice points these equations are interpolated,
+// by the cubic curve, in x, then y, then z. Unlike the later ones it is not 0 at lattice points.
+// The hash mixes 32-bit lattice coordinates, so nothing repeats within 2^32 cells unless a period
+// is asked for.
 #pragma once
 
 #include <array>
@@ -12,9 +13,12 @@
 
 namespace pse::num {
 
-// Two 32-bit numbers for each axis: one to mix its lattice coordinate in, one to draw its component of the gradient.
-inline constexpr std::array<std::uint32_t, 4> lattice_factors = {0x8da6b343u, 0xd8163841u, 0xcb1ab31fu, 0x165667b1u};
-inline constexpr std::array<std::uint32_t, 4> gradient_factors = {0x9e3779b1u, 0x85ebca77u, 0xc2b2ae3du, 0x27d4eb2fu};
+// Two 32-bit numbers for each axis: one to mix its lattice coordinate in, one to draw its component
+// of the gradient.
+inline constexpr std::array<std::uint32_t, 4> lattice_factors = {0x8da6b343u, 0xd8163841u,
+                                                                 0xcb1ab31fu, 0x165667b1u};
+inline constexpr std::array<std::uint32_t, 4> gradient_factors = {0x9e3779b1u, 0x85ebca77u,
+                                                                  0xc2b2ae3du, 0x27d4eb2fu};
 
 // A number in [-1, 1] from 32 bits.
 template <class F>
@@ -22,8 +26,8 @@ F unit_from_bits(const IntOf<F>& h) {
   return to_float(h) * 0x1p-31f;
 }
 
-// The noise at a point, found within [-1.6, 1.6]; at a lattice point its value there, even in [-1, 1]. A period is any whole number
-// up to 2^20 here, and 0 or less means that.
+// The noise at a point, found within [-1.6, 1.6]; at a lattice point its value there, even in [-1,
+// 1]. A period is any whole number up to 2^20 here, and 0 or less means that.
 template <class F, std::size_t N>
 F noise_1985(const std::array<F, N>& point, const NoiseOptions<BaseOf<F>, N>& options = {}) {
   using B = BaseOf<F>;
@@ -36,7 +40,8 @@ F noise_1985(const std::array<F, N>& point, const NoiseOptions<BaseOf<F>, N>& op
     const I low = to_int(cell.corner[axis]);
     std::array<I, 2> ends = {low, low + I(1)};
     if (options.period) ends = wrap(cell.corner[axis], (*options.period)[axis], 0x1p20f);
-    for (std::size_t end = 0; end < 2; ++end) mixed[axis][end] = ends[end] * I(word(lattice_factors[axis]));
+    for (std::size_t end = 0; end < 2; ++end)
+      mixed[axis][end] = ends[end] * I(word(lattice_factors[axis]));
   }
 
   return interpolate<F, N>(cubic_fades(cell), [&](std::size_t c, const F* start) {

@@ -1,6 +1,7 @@
-// The vocabulary that every builtin numeric function is written in, for plain C++ numbers. One template body per idea:
-// instantiated with `float` it is the C++ library, with Dual (noise/dual.h) it carries derivatives, with IrFloat
-// (lower/ir_value.h) it writes IR. Each word here means one operator of the table in ir/ops.cpp, edge cases included.
+// The vocabulary that every builtin numeric function is written in, for plain C++ numbers. One
+// template body per idea: instantiated with `float` it is the C++ library, with Dual (noise/dual.h)
+// it carries derivatives, with IrFloat (lower/ir_value.h) it writes IR. Each word here means one
+// operator of the table in ir/ops.cpp, edge cases included.
 #pragma once
 
 #include <array>
@@ -18,7 +19,8 @@ namespace pse::num {
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
 inline constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
-// A 32-bit integer whose arithmetic is modulo 2^32. `<<` and `>>` shift zeros in; `sar` shifts the sign in.
+// A 32-bit integer whose arithmetic is modulo 2^32. `<<` and `>>` shift zeros in; `sar` shifts the
+// sign in.
 struct Int {
   std::int32_t value = 0;
 
@@ -33,8 +35,12 @@ struct Int {
   friend constexpr Int operator&(Int a, Int b) { return of(a.bits() & b.bits()); }
   friend constexpr Int operator|(Int a, Int b) { return of(a.bits() | b.bits()); }
   friend constexpr Int operator^(Int a, Int b) { return of(a.bits() ^ b.bits()); }
-  friend constexpr Int operator<<(Int a, Int b) { return b.bits() > 31 ? Int(0) : of(a.bits() << b.bits()); }
-  friend constexpr Int operator>>(Int a, Int b) { return b.bits() > 31 ? Int(0) : of(a.bits() >> b.bits()); }
+  friend constexpr Int operator<<(Int a, Int b) {
+    return b.bits() > 31 ? Int(0) : of(a.bits() << b.bits());
+  }
+  friend constexpr Int operator>>(Int a, Int b) {
+    return b.bits() > 31 ? Int(0) : of(a.bits() >> b.bits());
+  }
   friend constexpr Int sar(Int a, Int b) { return {a.value >> (b.bits() > 31 ? 31 : b.value)}; }
   friend constexpr bool operator==(Int a, Int b) { return a.value == b.value; }
   friend constexpr bool operator!=(Int a, Int b) { return a.value != b.value; }
@@ -60,7 +66,8 @@ using BoolOf = typename Kinds<F>::Truth;
 template <class F>
 using BaseOf = typename Kinds<F>::Base;
 
-// Constant tables. The number of entries is a power of two (bytes: 256); an index counts modulo that.
+// Constant tables. The number of entries is a power of two (bytes: 256); an index counts modulo
+// that.
 struct FloatTable {
   std::string_view name;
   std::span<const float> entries;
@@ -121,8 +128,8 @@ constexpr Int bytes_add(Int a, Int b) {
   return Int::of(low ^ ((a.bits() ^ b.bits()) & 0x80808080u));
 }
 
-// One of two pure computations. Compiled code may skip the side that no sample takes, so a rare and dear case goes here
-// rather than into a select.
+// One of two pure computations. Compiled code may skip the side that no sample takes, so a rare and
+// dear case goes here rather than into a select.
 template <std::size_t Count, class Then, class Else>
 std::array<float, Count> choose(bool condition, const Then& then_side, const Else& else_side) {
   return condition ? then_side() : else_side();

@@ -29,7 +29,8 @@ void log2_in_two(const F& x, F& high, F& low) {
   const F t2_rest = fma(t, t, -t2);
   const F cubic = t2 * c;
   const F cubic_rest = fma(t2, F(c), -cubic) + fma(t2_rest, F(c), t2 * c_rest);
-  const F higher = fma(t2 * t2, polynomial(t2, {0.57708025f, 0.411844313f, 0.337947696f}), cubic_rest);
+  const F higher =
+      fma(t2 * t2, polynomial(t2, {0.57708025f, 0.411844313f, 0.337947696f}), cubic_rest);
   const F term = t * cubic;
   const F term_rest = fma(t, cubic, -term) + t * higher;
   // 2 / ln 2 times t, and the exponent.
@@ -42,8 +43,8 @@ void log2_in_two(const F& x, F& high, F& low) {
   fast_two_sum(sum, sum_rest + (mantissa_rest + (linear_rest + term_rest)), high, low);
 }
 
-// x^y by the rules of IEEE pow, among them: x^0 = 1^y = 1 even for NaN; NaN where x < 0 and y is not whole. x^1 = x and
-// whole powers of two are exact. Error below 1 ulp.
+// x^y by the rules of IEEE pow, among them: x^0 = 1^y = 1 even for NaN; NaN where x < 0 and y is
+// not whole. x^1 = x and whole powers of two are exact. Error below 1 ulp.
 template <class F>
 F pow(const F& x, const F& y) {
   using I = IntOf<F>;
@@ -57,22 +58,27 @@ F pow(const F& x, const F& y) {
   const F rest = select(kept == product, fma(y, high, -product) + y * low, F(0.0f));
   const F n = round(kept);
   const F r = (kept - n) + rest;
-  const F q = polynomial(r, {0.693147182f, 0.240226507f, 0.0555035807f, 0.00961808022f, 0.00133916701f, 0.000154546928f});
+  const F q = polynomial(r, {0.693147182f, 0.240226507f, 0.0555035807f, 0.00961808022f,
+                             0.00133916701f, 0.000154546928f});
   const F computed = scale_by_power(fma(r, q, F(1.0f)), n);
 
   // Where a is 0, 1 or infinite, or y is infinite, the magnitude is 0, 1 or infinity.
   const BoolOf<F> grows = either(both(a > 1.0f, y > 0.0f), both(a < 1.0f, y < 0.0f));
   const F limit = select(a == 1.0f, F(1.0f), select(grows, F(infinity), F(0.0f)));
-  const BoolOf<F> at_limit = either(either(a == 0.0f, a == infinity), either(a == 1.0f, abs(y) == infinity));
+  const BoolOf<F> at_limit =
+      either(either(a == 0.0f, a == infinity), either(a == 1.0f, abs(y) == infinity));
   const F magnitude = select(at_limit, limit, computed);
 
-  // The sign of a negative base: odd powers keep it, other whole powers lose it, and there are no others.
+  // The sign of a negative base: odd powers keep it, other whole powers lose it, and there are no
+  // others.
   const BoolOf<F> whole = trunc(y) == y;
   const BoolOf<F> odd = both(both(whole, abs(y) < 16777216.0f), (to_int(y) & I(1)) == I(1));
   const BoolOf<F> negative = bits(x) < I(0);
   const F signed_magnitude = select(both(odd, negative), -magnitude, magnitude);
-  const BoolOf<F> undefined = both(both(x < 0.0f, negate(whole)), both(abs(x) < infinity, abs(y) < infinity));
-  const F defined = select(either(undefined, either(x != x, y != y)), F(not_a_number), signed_magnitude);
+  const BoolOf<F> undefined =
+      both(both(x < 0.0f, negate(whole)), both(abs(x) < infinity, abs(y) < infinity));
+  const F defined =
+      select(either(undefined, either(x != x, y != y)), F(not_a_number), signed_magnitude);
   return select(either(y == 0.0f, x == 1.0f), F(1.0f), select(y == 1.0f, x, defined));
 }
 
@@ -98,7 +104,8 @@ F cbrt(const F& x) {
   return select(either(x == 0.0f, magnitude == infinity), x, result);
 }
 
-// sqrt(x^2 + y^2) without overflow on the way. Error below 1.3 ulp; infinite where either is, else NaN where either is.
+// sqrt(x^2 + y^2) without overflow on the way. Error below 1.3 ulp; infinite where either is, else
+// NaN where either is.
 template <class F>
 F hypot(const F& x, const F& y) {
   using I = IntOf<F>;
@@ -112,13 +119,13 @@ F hypot(const F& x, const F& y) {
   return select(either(a == infinity, b == infinity), F(infinity), result);
 }
 
-// a - b floor(a / b), with the sign of b: in [0, b] for b > 0. NaN for b = 0, for infinite a or b, and for NaN.
-// Exact while a / b is below 2^24.
+// a - b floor(a / b), with the sign of b: in [0, b] for b > 0. NaN for b = 0, for infinite a or b,
+// and for NaN. Exact while a / b is below 2^24.
 template <class F>
 F mod(const F& a, const F& b) {
   const F r = fma(-floor(a / b), b, a);
   // A quotient rounded up to a whole number leaves a remainder of the wrong sign.
-  const BoolOf<F> wrong = either(both(b > 0.0f, r < 0.0f), both(b < 0.0f, r > 0.0f));
+  const BoolOf<F> wrong = either(both(b > 0.0f, r < 0.0f), both(b<0.0f, r> 0.0f));
   return select(wrong, r + b, r);
 }
 

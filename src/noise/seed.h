@@ -1,12 +1,14 @@
-// From a seed, any number a program gives, to the key that the lattice hashes mix in. Seed 0 has key 0: the reference.
+// From a seed, any number a program gives, to the key that the lattice hashes mix in. Seed 0 has
+// key 0: the reference.
 #pragma once
 
 #include "noise/number.h"
 
 namespace pse::num {
 
-// Scatters 32 bits: every bit of the result depends on every bit of h, no two h give the same, and 0 gives 0.
-// (The multipliers are those that a public search for the least biased mixing of this form found.)
+// Scatters 32 bits: every bit of the result depends on every bit of h, no two h give the same, and
+// 0 gives 0. (The multipliers are those that a public search for the least biased mixing of this
+// form found.)
 template <class I>
 I scatter(I h) {
   h = (h ^ (h >> I(16))) * I(word(0x21f0aaadu));

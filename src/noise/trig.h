@@ -1,4 +1,5 @@
-// Sine, cosine, tangent and their inverses. Few operations, no tables on the common path. Errors as in exp_log.h.
+// Sine, cosine, tangent and their inverses. Few operations, no tables on the common path. Errors as
+// in exp_log.h.
 #pragma once
 
 #include "noise/number.h"
@@ -7,7 +8,8 @@
 namespace pse::num {
 
 inline constexpr float pi = 3.14159274f, pi_rest = -8.74227766e-8f;
-inline constexpr float half_pi = 1.57079637f, half_pi_rest = -4.37113883e-8f, half_pi_last = -1.71512451e-15f;
+inline constexpr float half_pi = 1.57079637f, half_pi_rest = -4.37113883e-8f,
+                       half_pi_last = -1.71512451e-15f;
 
 // Up to here multiples of pi/2 are taken away with pi/2 in three parts; beyond, by integers.
 inline constexpr float near_limit = 32768.0f;
@@ -19,8 +21,9 @@ struct QuarterTurns {
   F rest;
 };
 
-// For |x| >= near_limit (Payne and Hanek): x = m 2^s with a whole m of 24 bits, so of 2/pi only a window of bits that
-// depends on s matters modulo 4. The product of m with eight digits of 12 bits is exact; six of them are good.
+// For |x| >= near_limit (Payne and Hanek): x = m 2^s with a whole m of 24 bits, so of 2/pi only a
+// window of bits that depends on s matters modulo 4. The product of m with eight digits of 12 bits
+// is exact; six of them are good.
 template <class F>
 std::array<F, 2> reduce_large_angle(const F& x) {
   using I = IntOf<F>;
@@ -57,7 +60,8 @@ std::array<F, 2> reduce_large_angle(const F& x) {
   return {to_float(select(negative, I(0) - whole, whole)), select(negative, -rest, rest) + (x - x)};
 }
 
-// The reduction of any angle. The first product of the near case is exact with fma, and the others nearly.
+// The reduction of any angle. The first product of the near case is exact with fma, and the others
+// nearly.
 template <class F>
 QuarterTurns<F> quarter_turns(const F& x) {
   const auto [n, rest] = choose<2>(
@@ -82,7 +86,8 @@ F sin_of(const QuarterTurns<F>& angle) {
   return from_bits(bits(value) ^ ((angle.whole & I(2)) << I(30)));
 }
 
-// The sine of an angle in radians, of any size. Error below 1.7 ulp; keeps -0; NaN for infinities and NaN.
+// The sine of an angle in radians, of any size. Error below 1.7 ulp; keeps -0; NaN for infinities
+// and NaN.
 template <class F>
 F sin(const F& x) {
   return select(x == 0.0f, x, sin_of(quarter_turns(x)));
@@ -96,15 +101,18 @@ F cos(const F& x) {
   return sin_of(angle);
 }
 
-// The tangent of an angle in radians, of any size. Error below 2.5 ulp; keeps -0; NaN for infinities and NaN.
+// The tangent of an angle in radians, of any size. Error below 2.5 ulp; keeps -0; NaN for
+// infinities and NaN.
 template <class F>
 F tan(const F& x) {
   using I = IntOf<F>;
   const QuarterTurns<F> angle = quarter_turns(x);
   const F r = angle.rest;
   const F s = r * r;
-  const F t = fma(s * r, polynomial(s, {0.333333522f, 0.133325905f, 0.0540675186f, 0.02124485f, 0.0109296069f,
-                                        -2.70353521e-05f, 0.00443307729f}), r);
+  const F t = fma(s * r,
+                  polynomial(s, {0.333333522f, 0.133325905f, 0.0540675186f, 0.02124485f,
+                                 0.0109296069f, -2.70353521e-05f, 0.00443307729f}),
+                  r);
   const BoolOf<F> odd = (angle.whole & I(1)) == I(1);
   return select(x == 0.0f, x, select(odd, -1.0f / t, t));
 }
@@ -112,7 +120,8 @@ F tan(const F& x) {
 // asin(s) - s for 0 <= s <= 1/2, z = s^2.
 template <class F>
 F asin_tail(const F& s, const F& z) {
-  return (s * z) * polynomial(z, {0.166667521f, 0.0749531016f, 0.0454690196f, 0.0241855029f, 0.042157013f});
+  return (s * z) *
+         polynomial(z, {0.166667521f, 0.0749531016f, 0.0454690196f, 0.0241855029f, 0.042157013f});
 }
 
 // a with the sign of x.
@@ -121,7 +130,8 @@ F with_sign(const F& a, const F& x) {
   return from_bits(bits(a) ^ (bits(x) & IntOf<F>(word(0x80000000u))));
 }
 
-// The angle in [-pi/2, pi/2] whose sine is x. Error below 1.8 ulp; keeps -0; NaN where |x| > 1 and for NaN.
+// The angle in [-pi/2, pi/2] whose sine is x. Error below 1.8 ulp; keeps -0; NaN where |x| > 1 and
+// for NaN.
 template <class F>
 F asin(const F& x) {
   // Beyond 1/2 by way of asin x = pi/2 - 2 asin sqrt((1 - x)/2).
@@ -134,7 +144,8 @@ F asin(const F& x) {
   return with_sign(select(far, far_angle, s + tail), x);
 }
 
-// The angle in [0, pi] whose cosine is x. Error below 1.3 ulp; 0 at 1; NaN where |x| > 1 and for NaN.
+// The angle in [0, pi] whose cosine is x. Error below 1.3 ulp; 0 at 1; NaN where |x| > 1 and for
+// NaN.
 template <class F>
 F acos(const F& x) {
   const F a = abs(x);
@@ -154,8 +165,11 @@ F acos(const F& x) {
 template <class F>
 F atan_reduced(const F& t) {
   const F s = t * t;
-  return fma(s * t, polynomial(s, {-0.333332986f, 0.199985355f, -0.142641261f, 0.109516546f, -0.0840205625f,
-                                   0.0579358004f, -0.0311577655f, 0.0109045366f, -0.001791502f}), t);
+  return fma(
+      s * t,
+      polynomial(s, {-0.333332986f, 0.199985355f, -0.142641261f, 0.109516546f, -0.0840205625f,
+                     0.0579358004f, -0.0311577655f, 0.0109045366f, -0.001791502f}),
+      t);
 }
 
 // The angle in [-pi/2, pi/2] whose tangent is x. Error below 1.5 ulp; keeps -0; NaN for NaN.
@@ -167,13 +181,14 @@ F atan(const F& x) {
   return with_sign(select(steep, half_pi - (p - half_pi_rest), p), x);
 }
 
-// The angle of the point (x, y) in [-pi, pi], counted from the x axis to the y axis; IEEE rules for zeros, signs and
-// infinities. Error below 1.7 ulp; NaN where either is NaN.
+// The angle of the point (x, y) in [-pi, pi], counted from the x axis to the y axis; IEEE rules for
+// zeros, signs and infinities. Error below 1.7 ulp; NaN where either is NaN.
 template <class F>
 F atan2(const F& y, const F& x) {
   const F ax = abs(x), ay = abs(y);
   const F shorter = min(ax, ay), longer = max(ax, ay);
-  const F ratio = select(longer == 0.0f, F(0.0f), select(shorter == infinity, F(1.0f), shorter / longer));
+  const F ratio =
+      select(longer == 0.0f, F(0.0f), select(shorter == infinity, F(1.0f), shorter / longer));
   const F p = atan_reduced(ratio);
   const F first_quadrant = select(ay > ax, half_pi - (p - half_pi_rest), p);
   const BoolOf<F> left = bits(x) < IntOf<F>(0);

@@ -1,4 +1,5 @@
-// Every builtin on numbers and every noise: the compiled kernel gives the interpreter's bits, on each processor level.
+// Every builtin on numbers and every noise: the compiled kernel gives the interpreter's bits, on
+// each processor level.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -50,7 +51,8 @@ ir::Module calls_of(const std::string& group) {
       }
     } else {
       const Components point(in.begin(), in.begin() + 3);
-      called = put({builtin.name, {point}, {}}) || put({builtin.name, {point, {in[3]}}, {{"seed", {in[4]}}}});
+      called = put({builtin.name, {point}, {}}) ||
+               put({builtin.name, {point, {in[3]}}, {{"seed", {in[4]}}}});
       put({builtin.name, {point}, {{"period", {in[3]}}, {"seed", {in[4]}}}});
     }
     EXPECT_TRUE(called) << builtin.name;
@@ -60,10 +62,12 @@ ir::Module calls_of(const std::string& group) {
 
 std::vector<std::vector<float>> columns(std::int64_t count) {
   std::mt19937 random(5);
-  std::vector<std::vector<float>> result(inputs, std::vector<float>(static_cast<std::size_t>((count + 15) / 16 * 16)));
+  std::vector<std::vector<float>> result(
+      inputs, std::vector<float>(static_cast<std::size_t>((count + 15) / 16 * 16)));
   for (auto& column : result) {
     for (float& x : column) {
-      x = std::ldexp(static_cast<float>(random()) * 0x1p-31f - 1.0f, static_cast<int>(random() % 12) - 2);
+      x = std::ldexp(static_cast<float>(random()) * 0x1p-31f - 1.0f,
+                     static_cast<int>(random() % 12) - 2);
       if (random() % 4 == 0) x = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
     }
   }
@@ -72,7 +76,8 @@ std::vector<std::vector<float>> columns(std::int64_t count) {
 
 void agree(const std::string& group) {
   constexpr std::int64_t count = 203;
-  const auto split = std::make_shared<const passes::SplitModule>(passes::run_pipeline(calls_of(group)));
+  const auto split =
+      std::make_shared<const passes::SplitModule>(passes::run_pipeline(calls_of(group)));
   const ir::Module& module = split->module;
   const auto run = [&](const Kernel& kernel) {
     FrameState state;
@@ -100,7 +105,8 @@ void agree(const std::string& group) {
     const auto found = run(**kernel);
     for (std::size_t o = 0; o < found.size(); ++o) {
       for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-        ASSERT_EQ(std::bit_cast<std::uint32_t>(expected[o][i]), std::bit_cast<std::uint32_t>(found[o][i]))
+        ASSERT_EQ(std::bit_cast<std::uint32_t>(expected[o][i]),
+                  std::bit_cast<std::uint32_t>(found[o][i]))
             << module.outputs[o].name << ", sample " << i << " on " << target.name;
       }
     }

@@ -27,7 +27,8 @@ struct BuiltinProgram {
     const auto place = [&](const std::vector<float>& numbers) {
       Components components;
       for (const float number : numbers) {
-        components.push_back(builder.emit(ir::Op::input, {}, static_cast<std::int32_t>(module.inputs.size())));
+        components.push_back(
+            builder.emit(ir::Op::input, {}, static_cast<std::int32_t>(module.inputs.size())));
         module.inputs.push_back({"input." + std::to_string(inputs.size()), ir::Rate::sample});
         inputs.push_back(number);
       }
@@ -58,8 +59,9 @@ struct BuiltinProgram {
   std::vector<float> run() const { return run(inputs); }
 };
 
-inline std::vector<float> run_builtin(const std::string& name, const Vectors& arguments,
-                                      const std::vector<std::pair<std::string, std::vector<float>>>& named = {}) {
+inline std::vector<float> run_builtin(
+    const std::string& name, const Vectors& arguments,
+    const std::vector<std::pair<std::string, std::vector<float>>>& named = {}) {
   return BuiltinProgram(name, arguments, named).run();
 }
 

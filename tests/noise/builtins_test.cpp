@@ -1,4 +1,5 @@
-// Builtins as programs call them: names, binding of arguments, messages, and the same bits as the C++ templates.
+// Builtins as programs call them: names, binding of arguments, messages, and the same bits as the
+// C++ templates.
 #include "builtin_run.h"
 
 #include <gtest/gtest.h>
@@ -20,8 +21,10 @@ TEST(Builtins, NamesAreUniqueAndAliasesLead) {
   std::set<std::string_view> names;
   for (const Builtin& builtin : builtins()) {
     EXPECT_TRUE(names.insert(builtin.name).second) << builtin.name;
-    if (builtin.same_as.empty()) EXPECT_FALSE(builtin.doc.empty()) << builtin.name;
-    else EXPECT_NE(find_builtin(builtin.same_as), nullptr) << builtin.name;
+    if (builtin.same_as.empty())
+      EXPECT_FALSE(builtin.doc.empty()) << builtin.name;
+    else
+      EXPECT_NE(find_builtin(builtin.same_as), nullptr) << builtin.name;
   }
   EXPECT_EQ(find_builtin("nothing_like_it"), nullptr);
 }
@@ -50,13 +53,17 @@ TEST(Builtins, SaysWhatIsWrong) {
   EXPECT_EQ(error("sqrt", {{1}}, {{"seed", {1}}}), "sqrt(a) has no parameter 'seed'");
   EXPECT_EQ(error("max", {{1, 2}, {1, 2, 3}}),
             "max takes vectors of one length, and these have 2 and 3 components");
-  EXPECT_EQ(error("Noise", {{1, 2, 3, 4, 5}}), "Noise takes a position of 1 to 4 coordinates, and this has 5");
-  EXPECT_EQ(error("pnoise", {{1, 2, 3}}), "'period' is missing in the call of pnoise(p..., period, seed = 0)");
+  EXPECT_EQ(error("Noise", {{1, 2, 3, 4, 5}}),
+            "Noise takes a position of 1 to 4 coordinates, and this has 5");
+  EXPECT_EQ(error("pnoise", {{1, 2, 3}}),
+            "'period' is missing in the call of pnoise(p..., period, seed = 0)");
   EXPECT_EQ(error("pnoise", {{1, 2, 3}, {4, 4}}),
             "the period of pnoise is one number or one for each of the 3 coordinates");
   EXPECT_EQ(error("Noise", {{1, 2, 3}}, {{"seed", {1, 2}}}), "the seed of Noise is one number");
-  EXPECT_EQ(error("book_noise", {{1, 2}}), "book_noise takes a position of 3 coordinates, and this has 2");
-  EXPECT_EQ(error("book_noise", {{1, 2, 3}}, {{"seed", {1}}}), "book_noise(p...) has no parameter 'seed'");
+  EXPECT_EQ(error("book_noise", {{1, 2}}),
+            "book_noise takes a position of 3 coordinates, and this has 2");
+  EXPECT_EQ(error("book_noise", {{1, 2, 3}}, {{"seed", {1}}}),
+            "book_noise(p...) has no parameter 'seed'");
   EXPECT_EQ(error("dot", {{1, 2, 3}, {1, 2}}),
             "dot takes two vectors of one length, and these have 3 and 2 components");
 }
@@ -99,17 +106,25 @@ std::vector<Pair> pairs(const num::NoiseOptions<float, N>& options) {
   };
   std::vector<Pair> list = {
       {"Noise", number([=](Point p) { return num::improved_noise(p, options); })},
-      {"Dnoise", several([=](Point p) { return num::gradient(num::improved_noise(num::variables(p), options)); })},
+      {"Dnoise", several([=](Point p) {
+         return num::gradient(num::improved_noise(num::variables(p), options));
+       })},
       {"vnoise", several([=](Point p) { return num::improved_vector_noise(p, options); })},
       {"noise1985", number([=](Point p) { return num::noise_1985(p, options); })},
-      {"Dnoise1985", several([=](Point p) { return num::gradient(num::noise_1985(num::variables(p), options)); })},
+      {"Dnoise1985", several([=](Point p) {
+         return num::gradient(num::noise_1985(num::variables(p), options));
+       })},
       {"noise1989", number([=](Point p) { return num::noise_1989(p, options); })},
-      {"Dnoise1989", several([=](Point p) { return num::gradient(num::noise_1989(num::variables(p), options)); })},
+      {"Dnoise1989", several([=](Point p) {
+         return num::gradient(num::noise_1989(num::variables(p), options));
+       })},
   };
   if constexpr (N == 3) {
     if (!options.period && !options.key) {
       list.push_back({"book_noise", number([=](Point p) { return num::book_noise(p); })});
-      list.push_back({"Dbook_noise", several([=](Point p) { return num::gradient(num::book_noise(num::variables(p))); })});
+      list.push_back({"Dbook_noise", several([=](Point p) {
+                        return num::gradient(num::book_noise(num::variables(p)));
+                      })});
     }
   }
   return list;
@@ -122,8 +137,10 @@ void noise_agrees(bool periodic, bool seeded) {
   std::vector<std::pair<std::string, std::vector<float>>> named;
   if (periodic) {
     options.period.emplace();
-    for (std::size_t axis = 0; axis < N; ++axis) (*options.period)[axis] = static_cast<float>(3 + 4 * axis);
-    named.emplace_back("period", std::vector<float>(options.period->begin(), options.period->end()));
+    for (std::size_t axis = 0; axis < N; ++axis)
+      (*options.period)[axis] = static_cast<float>(3 + 4 * axis);
+    named.emplace_back("period",
+                       std::vector<float>(options.period->begin(), options.period->end()));
   }
   if (seeded) {
     options.key = num::key_of_seed(3.0f);
@@ -135,11 +152,13 @@ void noise_agrees(bool periodic, bool seeded) {
     std::uniform_real_distribution<float> coordinate(-300.0f, 300.0f);
     for (int i = 0; i < 120; ++i) {
       std::vector<float> inputs = program.inputs;
-      for (std::size_t k = 0; k < N; ++k) inputs[k] = i < 80 ? coordinate(random) : std::ldexp(coordinate(random), i - 80);
+      for (std::size_t k = 0; k < N; ++k)
+        inputs[k] = i < 80 ? coordinate(random) : std::ldexp(coordinate(random), i - 80);
       const auto expected = pair.direct(inputs), found = program.run(inputs);
       ASSERT_EQ(expected.size(), found.size());
       for (std::size_t k = 0; k < found.size(); ++k) {
-        ASSERT_TRUE(same(expected[k], found[k])) << pair.name << " in " << N << "-D at " << inputs[0];
+        ASSERT_TRUE(same(expected[k], found[k]))
+            << pair.name << " in " << N << "-D at " << inputs[0];
       }
     }
   }

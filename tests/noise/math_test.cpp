@@ -1,5 +1,5 @@
-// The math library against the C library in double: the errors that its declarations state, special values, and the
-// same bits from the IR.
+// The math library against the C library in double: the errors that its declarations state, special
+// values, and the same bits from the IR.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -19,23 +19,80 @@ double ulp(double v) {
   return std::ldexp(1.0, std::max(exponent - 24, -149));
 }
 
-// How far a float is from the exact value, in ulps; 0 where both are NaN, the same infinity, or the same zero.
+// How far a float is from the exact value, in ulps; 0 where both are NaN, the same infinity, or the
+// same zero.
 double error_in_ulps(float value, double exact) {
   constexpr double overflow = 0x1.ffffffp127;  // from here on the nearest float is infinite
   if (std::isnan(exact)) return std::isnan(value) ? 0 : HUGE_VAL;
-  if (std::fabs(exact) >= overflow) return value == std::copysign(HUGE_VALF, static_cast<float>(exact)) ? 0 : HUGE_VAL;
+  if (std::fabs(exact) >= overflow)
+    return value == std::copysign(HUGE_VALF, static_cast<float>(exact)) ? 0 : HUGE_VAL;
   if (exact == 0) return value == 0 && std::signbit(value) == std::signbit(exact) ? 0 : HUGE_VAL;
   if (!std::isfinite(value)) return HUGE_VAL;
   return std::fabs(value - exact) / ulp(exact);
 }
 
-const std::vector<float> edges = {
-    0.0f, -0.0f, 0x1p-149f, -0x1p-149f, 1e-40f, -1e-40f, 0x1p-126f, 1e-20f, -1e-20f, 1e-5f, 0.25f, 0.5f, -0.5f,
-    0.49999997f, 0.50000006f, 0.99999994f, 1.0f, -1.0f, 1.0000001f, -1.0000001f, 1.5f, 2.0f, -2.0f, 2.5f, 3.0f, -3.0f,
-    4.0f, 8.0f, 10.0f, 100.0f, 1000.0f, -104.0f, -103.9f, -87.4f, 88.72f, 88.73f, 89.41f, 89.42f, 127.5f, 128.0f,
-    -149.5f, -150.0f, 32767.998f, 32768.0f, -32768.0f, 11947.6f, 16777215.0f, 16777216.0f, -16777215.0f, 1e10f, 1e20f,
-    3.1415927f, 1.5707964f, -1.5707964f, 6.2831855f, 0x1.921fb4p0f, 1.6e38f, 0x1.fffffep127f, -0x1.fffffep127f,
-    HUGE_VALF, -HUGE_VALF, std::nanf("")};
+const std::vector<float> edges = {0.0f,
+                                  -0.0f,
+                                  0x1p-149f,
+                                  -0x1p-149f,
+                                  1e-40f,
+                                  -1e-40f,
+                                  0x1p-126f,
+                                  1e-20f,
+                                  -1e-20f,
+                                  1e-5f,
+                                  0.25f,
+                                  0.5f,
+                                  -0.5f,
+                                  0.49999997f,
+                                  0.50000006f,
+                                  0.99999994f,
+                                  1.0f,
+                                  -1.0f,
+                                  1.0000001f,
+                                  -1.0000001f,
+                                  1.5f,
+                                  2.0f,
+                                  -2.0f,
+                                  2.5f,
+                                  3.0f,
+                                  -3.0f,
+                                  4.0f,
+                                  8.0f,
+                                  10.0f,
+                                  100.0f,
+                                  1000.0f,
+                                  -104.0f,
+                                  -103.9f,
+                                  -87.4f,
+                                  88.72f,
+                                  88.73f,
+                                  89.41f,
+                                  89.42f,
+                                  127.5f,
+                                  128.0f,
+                                  -149.5f,
+                                  -150.0f,
+                                  32767.998f,
+                                  32768.0f,
+                                  -32768.0f,
+                                  11947.6f,
+                                  16777215.0f,
+                                  16777216.0f,
+                                  -16777215.0f,
+                                  1e10f,
+                                  1e20f,
+                                  3.1415927f,
+                                  1.5707964f,
+                                  -1.5707964f,
+                                  6.2831855f,
+                                  0x1.921fb4p0f,
+                                  1.6e38f,
+                                  0x1.fffffep127f,
+                                  -0x1.fffffep127f,
+                                  HUGE_VALF,
+                                  -HUGE_VALF,
+                                  std::nanf("")};
 
 // Edges, evenly spaced and random arguments in a range, and random bits.
 std::vector<float> arguments(float low, float high) {
@@ -59,17 +116,28 @@ struct OfOne {
   double bound;     // as declared
 };
 const OfOne of_one[] = {
-    {"exp", num::exp<float>, std::exp, -104, 89, 1.1},      {"exp2", num::exp2<float>, std::exp2, -150, 128, 1},
-    {"expm1", num::expm1<float>, std::expm1, -2, 2, 1.5},   {"expm1", num::expm1<float>, std::expm1, -20, 89, 1.5},
-    {"log", num::log<float>, std::log, 0.3f, 3, 1},         {"log2", num::log2<float>, std::log2, 0.3f, 3, 1.2},
-    {"log10", num::log10<float>, std::log10, 0.3f, 3, 1.2}, {"log1p", num::log1p<float>, std::log1p, -1, 3, 1.5},
-    {"sin", num::sin<float>, std::sin, -10, 10, 1.7},       {"sin", num::sin<float>, std::sin, -40000, 40000, 1.7},
-    {"cos", num::cos<float>, std::cos, -10, 10, 1.7},       {"cos", num::cos<float>, std::cos, -40000, 40000, 1.7},
-    {"tan", num::tan<float>, std::tan, -10, 10, 2.5},       {"tan", num::tan<float>, std::tan, -40000, 40000, 2.5},
-    {"asin", num::asin<float>, std::asin, -1, 1, 1.8},      {"acos", num::acos<float>, std::acos, -1, 1, 1.3},
-    {"atan", num::atan<float>, std::atan, -4, 4, 1.5},      {"sinh", num::sinh<float>, std::sinh, -3, 3, 1.7},
-    {"cosh", num::cosh<float>, std::cosh, -3, 3, 1.6},      {"sinh", num::sinh<float>, std::sinh, -90, 90, 1.7},
-    {"cosh", num::cosh<float>, std::cosh, -90, 90, 1.6},    {"tanh", num::tanh<float>, std::tanh, -10, 10, 1.5},
+    {"exp", num::exp<float>, std::exp, -104, 89, 1.1},
+    {"exp2", num::exp2<float>, std::exp2, -150, 128, 1},
+    {"expm1", num::expm1<float>, std::expm1, -2, 2, 1.5},
+    {"expm1", num::expm1<float>, std::expm1, -20, 89, 1.5},
+    {"log", num::log<float>, std::log, 0.3f, 3, 1},
+    {"log2", num::log2<float>, std::log2, 0.3f, 3, 1.2},
+    {"log10", num::log10<float>, std::log10, 0.3f, 3, 1.2},
+    {"log1p", num::log1p<float>, std::log1p, -1, 3, 1.5},
+    {"sin", num::sin<float>, std::sin, -10, 10, 1.7},
+    {"sin", num::sin<float>, std::sin, -40000, 40000, 1.7},
+    {"cos", num::cos<float>, std::cos, -10, 10, 1.7},
+    {"cos", num::cos<float>, std::cos, -40000, 40000, 1.7},
+    {"tan", num::tan<float>, std::tan, -10, 10, 2.5},
+    {"tan", num::tan<float>, std::tan, -40000, 40000, 2.5},
+    {"asin", num::asin<float>, std::asin, -1, 1, 1.8},
+    {"acos", num::acos<float>, std::acos, -1, 1, 1.3},
+    {"atan", num::atan<float>, std::atan, -4, 4, 1.5},
+    {"sinh", num::sinh<float>, std::sinh, -3, 3, 1.7},
+    {"cosh", num::cosh<float>, std::cosh, -3, 3, 1.6},
+    {"sinh", num::sinh<float>, std::sinh, -90, 90, 1.7},
+    {"cosh", num::cosh<float>, std::cosh, -90, 90, 1.6},
+    {"tanh", num::tanh<float>, std::tanh, -10, 10, 1.5},
     {"cbrt", num::cbrt<float>, std::cbrt, -9, 9, 0.8},
 };
 
@@ -134,7 +202,8 @@ TEST(Math, ExactValues) {
     EXPECT_EQ(num::pow(x, 1.0f), x);
     EXPECT_EQ(num::pow(x, 0.0f), 1.0f);
   }
-  for (int k = -9; k <= 9; ++k) EXPECT_EQ(num::cbrt(static_cast<float>(k * k * k)), static_cast<float>(k));
+  for (int k = -9; k <= 9; ++k)
+    EXPECT_EQ(num::cbrt(static_cast<float>(k * k * k)), static_cast<float>(k));
 }
 
 TEST(Math, FlooredRemainder) {
@@ -157,9 +226,11 @@ TEST(Math, FlooredRemainder) {
 
 // A NaN's bits do not reach a result.
 TEST(Math, NanInNanOut) {
-  for (const std::uint32_t bits : {0x7fc00000u, 0xffc00000u, 0x7f800001u, 0xffffffffu, 0x7fc12345u}) {
+  for (const std::uint32_t bits :
+       {0x7fc00000u, 0xffc00000u, 0x7f800001u, 0xffffffffu, 0x7fc12345u}) {
     const auto nan = std::bit_cast<float>(bits);
-    for (const OfOne& function : of_one) EXPECT_TRUE(std::isnan(function.ours(nan))) << function.name;
+    for (const OfOne& function : of_one)
+      EXPECT_TRUE(std::isnan(function.ours(nan))) << function.name;
     for (const OfTwo& function : of_two) {
       EXPECT_TRUE(std::isnan(function.ours(nan, 0.5f))) << function.name;
       EXPECT_TRUE(std::isnan(function.ours(0.5f, nan))) << function.name;

@@ -1,4 +1,5 @@
-// What the noise functions are as random functions: variance, energy of derivatives, seeds, periods, smoothness.
+// What the noise functions are as random functions: variance, energy of derivatives, seeds,
+// periods, smoothness.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -38,11 +39,14 @@ double mean_square(const Function& function) {
 
 // Closed forms for independent gradients: the sum over wavelets of the integral of their squares.
 TEST(NoiseStatistics, VarianceIsTheClosedForm) {
-  const auto near = [](double found, double expected) { EXPECT_NEAR(found / expected, 1, 0.025) << expected; };
+  const auto near = [](double found, double expected) {
+    EXPECT_NEAR(found / expected, 1, 0.025) << expected;
+  };
   near(mean_square<3>([](const auto& p) { return num::improved_noise(p); }), 0.072918945691);
   near(mean_square<2>([](const auto& p) { return num::improved_noise(p); }), 2 * 0.046531150427);
   near(mean_square<3>([](const auto& p) { return num::noise_1989(p); }), 0.033285390347);
-  // The closed form for the listing is 0.07489; its defective table gives 0.078949, measured with the C program.
+  // The closed form for the listing is 0.07489; its defective table gives 0.078949, measured with
+  // the C program.
   near(mean_square<3>([](const auto& p) { return num::book_noise(p); }), 0.078949);
 }
 
@@ -51,7 +55,8 @@ TEST(NoiseStatistics, DerivativeEnergyOfTheImprovedNoise) {
   const auto points = random_points<3>(200000);
   for (const auto& p : points) {
     const auto slope = num::gradient(num::improved_noise(num::variables(p)));
-    for (std::size_t k = 0; k < 3; ++k) energy[k] += slope[k] * slope[k] / static_cast<double>(points.size());
+    for (std::size_t k = 0; k < 3; ++k)
+      energy[k] += slope[k] * slope[k] / static_cast<double>(points.size());
   }
   EXPECT_NEAR(energy[0] / (77205550.0 / 160243083.0), 1, 0.03);
   EXPECT_NEAR(energy[1] / (84125180.0 / 160243083.0), 1, 0.03);
@@ -78,7 +83,8 @@ void seeds_differ() {
   using Function = std::function<double(const std::array<float, N>&)>;
   const auto seeded = [](float seed) {
     return Function([seed](const auto& p) {
-      return num::improved_noise(p, num::NoiseOptions<float, N>{std::nullopt, num::key_of_seed(seed)});
+      return num::improved_noise(p,
+                                 num::NoiseOptions<float, N>{std::nullopt, num::key_of_seed(seed)});
     });
   };
   const Function plain = [](const auto& p) { return num::improved_noise(p); };
@@ -87,7 +93,8 @@ void seeds_differ() {
   const double limit = N == 1 ? 0.3 : 0.08;
   for (const float seed : {1.0f, 2.0f, 3.0f, 1000.0f, -1.0f, 0.5f}) {
     EXPECT_LT(std::fabs(correlation<N>(plain, seeded(seed))), limit) << N << "-D, seed " << seed;
-    EXPECT_LT(std::fabs(correlation<N>(seeded(seed + 1), seeded(seed + 2))), limit) << N << "-D, seed " << seed;
+    EXPECT_LT(std::fabs(correlation<N>(seeded(seed + 1), seeded(seed + 2))), limit)
+        << N << "-D, seed " << seed;
   }
 }
 TEST(NoiseStatistics, SeedsAreUncorrelated) {
@@ -97,13 +104,15 @@ TEST(NoiseStatistics, SeedsAreUncorrelated) {
   seeds_differ<4>();
 }
 
-// Along a lattice line the unseeded noise shows one sequence, shifted from line to line; a seed must not show it again.
+// Along a lattice line the unseeded noise shows one sequence, shifted from line to line; a seed
+// must not show it again.
 TEST(NoiseStatistics, SeedsAreNotTranslations) {
   const auto line = [](float x, float seed) {
     std::vector<double> values;
     for (int z = 0; z < 256; ++z) {
       const num::NoiseOptions<float, 3> options{std::nullopt, num::key_of_seed(seed)};
-      values.push_back(num::improved_noise(std::array<float, 3>{x, 0.0f, static_cast<float>(z) + 0.25f}, options));
+      values.push_back(num::improved_noise(
+          std::array<float, 3>{x, 0.0f, static_cast<float>(z) + 0.25f}, options));
     }
     return values;
   };
@@ -134,9 +143,11 @@ void vector_parts_differ() {
   const auto part = [](std::size_t k) {
     return Function([k](const auto& p) { return num::improved_vector_noise(p)[k]; });
   };
-  EXPECT_NEAR(correlation<N>(part(0), [](const auto& p) { return num::improved_noise(p); }), 1, 1e-9);
+  EXPECT_NEAR(correlation<N>(part(0), [](const auto& p) { return num::improved_noise(p); }), 1,
+              1e-9);
   for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_LT(std::fabs(correlation<N>(part(k), part((k + 1) % 3))), N == 1 ? 0.2 : 0.08) << N << "-D, part " << k;
+    EXPECT_LT(std::fabs(correlation<N>(part(k), part((k + 1) % 3))), N == 1 ? 0.2 : 0.08)
+        << N << "-D, part " << k;
   }
 }
 TEST(NoiseStatistics, PartsOfVectorNoiseAreUncorrelated) {
@@ -177,7 +188,8 @@ void periods_hold() {
         auto moved = p;
         moved[N - 1] += period;
         moved[0] -= 2 * period;
-        EXPECT_EQ(kind.value(p, options), kind.value(moved, options)) << kind.name << " " << N << "-D, " << period;
+        EXPECT_EQ(kind.value(p, options), kind.value(moved, options))
+            << kind.name << " " << N << "-D, " << period;
         if (period == 256.0f && kind.name != std::string("1985")) {
           EXPECT_EQ(kind.value(p, options), kind.value(p, {}));
         }
@@ -195,9 +207,11 @@ TEST(NoiseStatistics, PeriodsHold) {
 // Within a period the periodic noise is the plain one, and other periods are made whole.
 TEST(NoiseStatistics, PeriodsKeepTheFirstTile) {
   num::NoiseOptions<float, 2> options{std::array{5.0f, 7.0f}, std::nullopt};
-  EXPECT_EQ(num::improved_noise(std::array{3.3f, 5.6f}, options), num::improved_noise(std::array{3.3f, 5.6f}));
+  EXPECT_EQ(num::improved_noise(std::array{3.3f, 5.6f}, options),
+            num::improved_noise(std::array{3.3f, 5.6f}));
   const auto with = [](float period) {
-    return num::improved_noise(std::array{300.3f, 0.4f}, num::NoiseOptions<float, 2>{std::array{period, period}, {}});
+    return num::improved_noise(std::array{300.3f, 0.4f},
+                               num::NoiseOptions<float, 2>{std::array{period, period}, {}});
   };
   EXPECT_EQ(with(4.4f), with(4.0f));
   EXPECT_EQ(with(0.0f), with(256.0f));
@@ -213,7 +227,8 @@ TEST(NoiseStatistics, TilesJoin) {
     for (const float period : {1.0f, 3.0f, 7.0f, 100.0f}) {
       const num::NoiseOptions<float, 2> options{std::array{period, period}, std::nullopt};
       for (const auto& p : random_points<2>(20)) {
-        EXPECT_NEAR(kind.value({period - h, p[1]}, options), kind.value({period + h, p[1]}, options), 8 * h);
+        EXPECT_NEAR(kind.value({period - h, p[1]}, options),
+                    kind.value({period + h, p[1]}, options), 8 * h);
         EXPECT_NEAR(kind.value({p[0], -h}, options), kind.value({p[0], h}, options), 8 * h);
       }
     }
@@ -232,7 +247,8 @@ void derivatives_are_right() {
         after[axis] += step;
         // Across a face the second derivative may jump, and the difference is not central.
         if (std::floor(before[axis]) != std::floor(after[axis])) continue;
-        const float difference = (kind.value(after, {}) - kind.value(before, {})) / (after[axis] - before[axis]);
+        const float difference =
+            (kind.value(after, {}) - kind.value(before, {})) / (after[axis] - before[axis]);
         EXPECT_NEAR(slope[axis], difference, 2e-3) << kind.name << " " << N << "-D at " << p[0];
       }
     }
@@ -245,7 +261,8 @@ TEST(NoiseStatistics, GradientsAreTheDifferences) {
   derivatives_are_right<4>();
 }
 
-// Across the faces of cells value and gradient are continuous; with the quintic fade the gradient's slope is as well.
+// Across the faces of cells value and gradient are continuous; with the quintic fade the gradient's
+// slope is as well.
 template <std::size_t N>
 void cells_join() {
   const float h = 0x1p-10f;
@@ -257,7 +274,8 @@ void cells_join() {
         below[axis] = at[axis] - h;
         above[axis] = at[axis] + h;
         EXPECT_NEAR(kind.value(below, {}), kind.value(above, {}), 8 * h) << kind.name;
-        const auto left = kind.gradient(below), middle = kind.gradient(at), right = kind.gradient(above);
+        const auto left = kind.gradient(below), middle = kind.gradient(at),
+                   right = kind.gradient(above);
         for (std::size_t k = 0; k < N; ++k) {
           EXPECT_NEAR(left[k], right[k], 60 * h) << kind.name;
           if (kind.second_derivative) {

@@ -20,15 +20,18 @@ TEST(NoiseValues, ImprovedHasTheReferenceNumbers) {
   for (const NoiseValue& known : improved_values) {
     EXPECT_NEAR(num::improved_noise(known.point), known.noise, 2e-6) << known.point[0];
     const auto slope = num::gradient(num::improved_noise(num::variables(known.point)));
-    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(slope[k], known.gradient[k], 1e-5) << known.point[0];
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_NEAR(slope[k], known.gradient[k], 1e-5) << known.point[0];
   }
   // The largest value of a period.
   EXPECT_NEAR(num::improved_noise(Point{12.355257f, 187.518508f, 5.5f}), 1.0363538, 2e-6);
 }
 
 TEST(NoiseValues, BookHasTheListingsNumbers) {
-  for (const auto& [point, noise] : book_values) EXPECT_NEAR(num::book_noise(point), noise, 2e-7) << point[0];
-  // Its table is no permutation: 137 is missing, 0 is there twice, 77 entries never moved, 76 of them odd.
+  for (const auto& [point, noise] : book_values)
+    EXPECT_NEAR(num::book_noise(point), noise, 2e-7) << point[0];
+  // Its table is no permutation: 137 is missing, 0 is there twice, 77 entries never moved, 76 of
+  // them odd.
   const auto entries = num::book_permutation().entries;
   EXPECT_EQ(std::ranges::count(entries, 137), 0);
   EXPECT_EQ(std::ranges::count(entries, 0), 2);
@@ -40,7 +43,8 @@ TEST(NoiseValues, BookHasTheListingsNumbers) {
   EXPECT_EQ(kept, 77);
   EXPECT_EQ(kept_odd, 76);
   // Positions are rounded to 1/1024.
-  EXPECT_EQ(num::book_noise(Point{0.3f, 0.7f, 1.9f}), num::book_noise(Point{0.3001f, 0.7001f, 1.9001f}));
+  EXPECT_EQ(num::book_noise(Point{0.3f, 0.7f, 1.9f}),
+            num::book_noise(Point{0.3001f, 0.7001f, 1.9001f}));
 }
 
 double quintic(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
@@ -80,8 +84,9 @@ TEST(NoiseValues, ZeroAtWholePositions) {
   EXPECT_TRUE(std::isnan(num::improved_noise(Point{0.5f, std::nanf(""), 0.5f})));
 }
 
-// At a lattice point the noise of 1985 is that point's value, and its derivative that point's gradient; both are spread
-// evenly over [-1, 1], of which the variance is 1/3, and are uncorrelated.
+// At a lattice point the noise of 1985 is that point's value, and its derivative that point's
+// gradient; both are spread evenly over [-1, 1], of which the variance is 1/3, and are
+// uncorrelated.
 TEST(NoiseValues, LatticeEquationsOf1985) {
   double value2 = 0, slope2 = 0, mixed = 0;
   const int side = 20;
@@ -110,7 +115,8 @@ TEST(NoiseValues, SphereTablesAreOnTheSphere) {
     const auto tables = num::sphere_tables(n);
     for (std::size_t i = 0; i < 256; ++i) {
       double square = 0;
-      for (const auto& table : tables) square += static_cast<double>(table.entries[i]) * table.entries[i];
+      for (const auto& table : tables)
+        square += static_cast<double>(table.entries[i]) * table.entries[i];
       EXPECT_NEAR(square, 1, 2e-7);
     }
     for (const auto& table : tables) {

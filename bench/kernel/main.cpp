@@ -11,6 +11,7 @@
 #include "codegen/kernel.h"
 #include "codegen/target.h"
 #include "hand_noise.h"
+#include "pictures.h"
 #include "scenes.h"
 
 namespace pse::bench {
@@ -47,6 +48,7 @@ struct Row {
   std::string name;
   double noises = 1;
   int repeat = 1;
+  std::int64_t count = samples;
   double compile_ms = 0;
   std::function<void()> run;
   std::vector<double> ns;  // per sample, one for each round
@@ -99,8 +101,8 @@ int run(int rounds) {
   std::vector<Row> rows;
   const bool by_hand = hand_noise_runs_here();
   if (by_hand) {
-    rows.push_back({"noise 3-D by hand, AVX-512", 1, 8, 0, [&] { hand_noise(points.in(0), points.in(1), points.in(2), points.out(0), samples); }, {}});
-    rows.push_back({"noise 3-D by hand, AVX-512, two at a time", 1, 8, 0, [&] { hand_noise_twice(points.in(0), points.in(1), points.in(2), points.out(0), samples); }, {}});
+    rows.push_back({"noise 3-D by hand, AVX-512", 1, 8, samples, 0, [&] { hand_noise(points.in(0), points.in(1), points.in(2), points.out(0), samples); }, {}});
+    rows.push_back({"noise 3-D by hand, AVX-512, two at a time", 1, 8, samples, 0, [&] { hand_noise_twice(points.in(0), points.in(1), points.in(2), points.out(0), samples); }, {}});
     for (Row& row : rows) {
       row.run();
       check(row.name, scenes[0], points);
@@ -136,12 +138,39 @@ int run(int rounds) {
       if (target.avx2 && !target.avx512) add(16, target);
     }
   }
+  // Noises per pixel: hyper's is what DESIGN.md counts.
+  std::vector<std::unique_ptr<Picture>> pictures;
+  const auto add_picture = [&](const std::string& name, int size, double noises, int width, const Target& target) {
+    const std::string cpu(target.name);
+    pictures.push_back(std::make_unique<Picture>(name, size, width, cpu));
+    Picture* picture = pictures.back().get();
+    picture->run();
+    if (!picture->agrees_with_interpreter()) {
+      std::fprintf(stderr, "%s: kernel and interpreter differ\n", name.c_str());
+      std::exit(1);
+    }
+    Row row;
+    row.name = name + ".pse, " + cpu.substr(7) + " x" + std::to_string(width);
+    row.noises = noises;
+    row.count = picture->samples();
+    row.compile_ms = (picture->times().parse + picture->times().lower + picture->times().passes + picture->times().codegen) * 1000;
+    row.run = [picture] { picture->run(); };
+    rows.push_back(std::move(row));
+  };
+  for (const Target& target : targets) {
+    if (!host_target() || &target > host_target() || !target.avx2 || (target.avx512 && !target.vbmi)) continue;
+    for (const int width : {target.width, 2 * target.width}) {
+      add_picture("fbm8", 1024, 8, width, target);
+      add_picture("marble", 1024, 6, width, target);
+      add_picture("hyper", 512, 234, width, target);
+    }
+  }
   std::vector<double> limit;
   for (int round = 0; round < rounds; ++round) {
     for (Row& row : rows) {
       const double start = now();
       for (int i = 0; i < row.repeat; ++i) row.run();
-      row.ns.push_back((now() - start) * 1e9 / static_cast<double>(samples * row.repeat));
+      row.ns.push_back((now() - start) * 1e9 / static_cast<double>(row.count * row.repeat));
     }
     if (by_hand) limit.push_back(std::min(rows[0].ns.back(), rows[1].ns.back()));
   }

@@ -47,9 +47,11 @@ void FunctionEmitter::emit_call(const ir::Instruction& in) {
     shape.push_back(varying(value));
     wide = wide || varying(value);
   }
-  llvm::Function* callee = parent_.called_function(static_cast<std::uint32_t>(in.imm), shape, wide ? lanes_ : 1);
+  const auto index = static_cast<std::uint32_t>(in.imm);
+  const unsigned lanes = wide ? lanes_ : 1;
+  llvm::Function* callee = parent_.called_function(index, shape, lanes);
   std::vector<llvm::Value*> arguments = {call_};
-  if (wide) arguments.push_back(mask_ ? mask_ : all_lanes());
+  if (parent_.takes_mask(index, lanes)) arguments.push_back(mask_ ? mask_ : all_lanes());
   for (const ir::Value value : in.operands) arguments.push_back(get(value));
   llvm::CallInst* result = b_.CreateCall(callee, arguments);
   result->setCallingConv(callee->getCallingConv());

@@ -34,8 +34,10 @@ class ModuleEmitter {
   // A read-only global with these contents; equal contents are one global.
   llvm::Value* constant_data(llvm::Constant* contents);
   // The function `index` of the IR for vectors of `lanes`, where these parameters vary. Its LLVM parameters are the
-  // KernelCall, the mask of active lanes (if lanes > 1), and the operands.
+  // KernelCall, the mask of active lanes (if it takes one), and the operands.
   llvm::Function* called_function(std::uint32_t index, const std::vector<bool>& varying, unsigned lanes);
+  // Whether a function does anything that depends on which lanes are active.
+  bool takes_mask(std::uint32_t index, unsigned lanes) const;
 
  private:
   llvm::Function* add_function(llvm::FunctionType* type, const std::string& name, bool external);
@@ -58,7 +60,7 @@ class FunctionEmitter {
   void emit_sample_loop(const std::vector<ir::Output>& outputs);
   void emit_once();
   // The body of a called function.
-  void emit_called();
+  void emit_called(bool takes_mask);
 
  private:
   // module_emitter.cpp: what is loaded once, before the samples

@@ -1,4 +1,5 @@
 // The shells of a kernel: its entry points, its loop over the samples, its read-only data and called functions.
+#include <algorithm>
 #include <cstddef>
 
 #include "codegen/kernel_call.h"
@@ -66,6 +67,12 @@ void ModuleEmitter::emit_frame() {
   FunctionEmitter(*this, frame, all_uniform(frame), 1, out).emit_once();
 }
 
+bool ModuleEmitter::takes_mask(std::uint32_t index, unsigned lanes) const {
+  const auto& body = ir_.functions[index].body.body;
+  const auto depends = [](const ir::Instruction& in) { return !in.regions.empty() || in.op == ir::Op::call; };
+  return lanes > 1 && std::ranges::any_of(body, depends);
+}
+
 llvm::Function* ModuleEmitter::called_function(std::uint32_t index, const std::vector<bool>& varying,
                                                unsigned lanes) {
   llvm::Function*& out = called_[{index, varying}];
@@ -74,7 +81,7 @@ llvm::Function* ModuleEmitter::called_function(std::uint32_t index, const std::v
   llvm::LLVMContext& context = out_.getContext();
 
   std::vector<llvm::Type*> params = {llvm::PointerType::get(context, 0)};
-  if (lanes > 1) params.push_back(lanes_type(llvm::Type::getInt1Ty(context), lanes));
+  if (takes_mask(index, lanes)) params.push_back(lanes_type(llvm::Type::getInt1Ty(context), lanes));
   for (std::size_t i = 0; i < varying.size(); ++i) {
     params.push_back(type_of(function.values[function.body.params[i]].type, varying[i] ? lanes : 1));
   }
@@ -86,7 +93,7 @@ llvm::Function* ModuleEmitter::called_function(std::uint32_t index, const std::v
   out = add_function(type, "call." + function.name, false);
   llvm::Function* created = out;  // emitting may add to the map
   Uniformity uniformity = lanes == 1 ? all_uniform(function) : find_uniformity(ir_, function, varying);
-  FunctionEmitter(*this, function, std::move(uniformity), lanes, created).emit_called();
+  FunctionEmitter(*this, function, std::move(uniformity), lanes, created).emit_called(takes_mask(index, lanes));
   return created;
 }
 
@@ -199,9 +206,9 @@ void FunctionEmitter::emit_once() {
   b_.CreateRetVoid();
 }
 
-void FunctionEmitter::emit_called() {
+void FunctionEmitter::emit_called(bool takes_mask) {
   unsigned first = 1;
-  if (lanes_ > 1) mask_ = out_->getArg(first++);
+  if (takes_mask) mask_ = out_->getArg(first++);
   std::vector<llvm::Value*> arguments;
   for (std::size_t i = 0; i < function_.body.params.size(); ++i) {
     arguments.push_back(out_->getArg(first + static_cast<unsigned>(i)));

@@ -123,7 +123,7 @@ std::vector<OptionSpec> render_options() {
        one,
        "N",
        "samples per vector instruction; 0: the best for this processor",
-       {"0", "1", "4", "8", "16"}},
+       {"0", "1", "4", "8", "16", "32"}},
       {"", "interpret", nothing, "", "run by the reference interpreter instead of compiled code"},
       {"", "no-optimize", nothing, "", "leave out the optimising passes"},
       {"", "no-cache", nothing, "", "neither use nor keep compiled kernels on disk"},

@@ -1,5 +1,5 @@
 // The door to LLVM: a shared module of its own, opened only when a kernel must really be compiled.
-// Start-up is a feature: a program whose kernel is cached never loads LLVM (docs/decisions/2026-11-22-kernel-objects.md).
+// Start-up is a feature: a program whose kernel is cached never loads LLVM (docs/decisions/2026-11-22-kernels.md).
 #pragma once
 
 #include <expected>

@@ -60,8 +60,8 @@ class Kernel {
 std::unique_ptr<Kernel> make_interpreted_kernel(std::shared_ptr<const passes::SplitModule> split);
 
 struct CodegenOptions {
-  int width = 0;            // 1, 4, 8, 16; 0: what this processor does best
-  std::string cpu;          // empty: this processor
+  int width = 0;            // 1, 4, 8, 16, 32; 0: what this processor does best with this program
+  std::string cpu;          // a name of codegen/target.h; empty: this processor
   bool optimize = true;
   std::filesystem::path cache;  // folder of compiled kernels by content; empty: none
 };

@@ -138,6 +138,22 @@ TEST(Cache, AFolderThatCannotBeWrittenIsNoError) {
   EXPECT_FALSE(compile_and_run(program, "/proc/nothing/here", 7));
 }
 
+// The best width: two vectors at a time where the program is small.
+TEST(Options, SmallProgramsOverlapTwoVectors) {
+  for (const int additions : {10, 1000}) {
+    TestProgram program;
+    ir::Value sum = program.input();
+    for (int i = 0; i < additions; ++i) sum = program.build.emit(Op::fadd, {sum, sum});
+    program.output(sum);
+    program.finish();
+    CodegenOptions options;
+    options.cpu = "x86-64-v4-vbmi";
+    const auto text = emit_listing(program.split, options, Listing::llvm);
+    ASSERT_TRUE(text);
+    EXPECT_NE(text->find(additions == 10 ? "fadd <32 x float>" : "fadd <16 x float>"), std::string::npos);
+  }
+}
+
 // Any byte of an object changed: it is refused or loaded, and nothing outside is touched.
 TEST(CodeObject, DamagedObjectsAreHandled) {
   const Folder folder("object");
@@ -178,7 +194,7 @@ TEST(Options, Listings) {
   options.cpu = "x86-64-v4-vbmi";  // also where this processor cannot run it
   const auto llvm = emit_listing(program.split, options, Listing::llvm);
   ASSERT_TRUE(llvm) << llvm.error();
-  EXPECT_NE(llvm->find("fadd <16 x float>"), std::string::npos) << *llvm;
+  EXPECT_NE(llvm->find("fadd <32 x float>"), std::string::npos) << *llvm;
   const auto assembly = emit_listing(program.split, options, Listing::assembly);
   ASSERT_TRUE(assembly) << assembly.error();
   EXPECT_NE(assembly->find("zmm"), std::string::npos) << *assembly;

@@ -75,6 +75,7 @@ class FunctionEmitter {
   void emit(const ir::Instruction& in);
   llvm::Value* emit_value(const ir::Instruction& in);
   llvm::Value* emit_input(const ir::Instruction& in);
+  llvm::Value* divide(llvm::Value* dividend, llvm::Value* divisor);
   llvm::Value* float_to_int(llvm::Value* value);
   llvm::Value* shift(ir::Op op, llvm::Value* value, llvm::Value* by);
   llvm::Value* canonical_nan(llvm::Value* value);

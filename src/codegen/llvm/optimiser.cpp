@@ -1,4 +1,4 @@
-// The passes were chosen by measurement: docs/decisions/2026-11-22-kernel-objects.md.
+// The passes were chosen by measurement: docs/decisions/2026-11-22-kernels.md.
 #include "codegen/llvm/optimiser.h"
 
 #include <llvm/Analysis/TargetLibraryInfo.h>

@@ -77,6 +77,16 @@ llvm::Value* FunctionEmitter::float_to_int(llvm::Value* value) {
   return by_pieces(b_, value, 4, [&](llvm::Value* v) { return call(x86_sse2_cvttps2dq, {v}); });
 }
 
+// By a power of two: the product with its inverse is the same number.
+llvm::Value* FunctionEmitter::divide(llvm::Value* dividend, llvm::Value* divisor) {
+  const auto* constant = llvm::dyn_cast<llvm::Constant>(divisor);
+  if (constant && constant->getType()->isVectorTy()) constant = constant->getSplatValue();
+  const auto* number = llvm::dyn_cast_or_null<llvm::ConstantFP>(constant);
+  llvm::APFloat inverse(0.0f);
+  if (!number || !number->getValueAPF().getExactInverse(&inverse)) return b_.CreateFDiv(dividend, divisor);
+  return b_.CreateFMul(dividend, llvm::ConstantFP::get(dividend->getType(), inverse));
+}
+
 // LLVM's shifts are undefined past 31.
 llvm::Value* FunctionEmitter::shift(Op op, llvm::Value* value, llvm::Value* by) {
   llvm::Type* t = value->getType();
@@ -115,7 +125,7 @@ llvm::Value* FunctionEmitter::emit_value(const ir::Instruction& in) {
     case Op::fadd: return b_.CreateFAdd(arg(0), arg(1));
     case Op::fsub: return b_.CreateFSub(arg(0), arg(1));
     case Op::fmul: return b_.CreateFMul(arg(0), arg(1));
-    case Op::fdiv: return b_.CreateFDiv(arg(0), arg(1));
+    case Op::fdiv: return divide(arg(0), arg(1));
     case Op::fma: {
       llvm::Value* a = arg(0);
       return b_.CreateIntrinsic(llvm::Intrinsic::fma, {a->getType()}, {a, arg(1), arg(2)});

@@ -80,7 +80,10 @@ Result<void> look_at_channels(Cursor at, std::uint64_t size, const ReadLimits& l
   const std::uint64_t end = at.at + size;
   part.has_channels = true;
   while (at.at < end && !at.ended) {
-    if (at.text().empty()) return {};
+    if (at.text().empty()) {
+      if (at.at == end) return {};
+      break;
+    }
     const std::uint32_t type = at.u32();
     at.u32();
     const std::int32_t x_step = at.i32(), y_step = at.i32();
@@ -91,12 +94,39 @@ Result<void> look_at_channels(Cursor at, std::uint64_t size, const ReadLimits& l
       return fail(ErrorKind::too_large,
                   file + " has more than " + std::to_string(limits.max_channels) + " channels");
   }
-  return {};
+  return fail(ErrorKind::damaged, file + " is damaged: its list of channels has a wrong length");
 }
 
-// Lengths inside a list of texts or a preview must add up to the attribute's size.
+// Types whose values have a size of their own. The library reads that many bytes whatever the file
+// says, and would take what follows for the next attribute.
+struct FixedSize {
+  const char* type;
+  std::uint64_t bytes;
+};
+constexpr std::array<FixedSize, 24> fixed_sizes = {
+    {{"box2f", 16},      {"box2i", 16},   {"chromaticities", 32},
+     {"compression", 1}, {"double", 8},   {"envmap", 1},
+     {"float", 4},       {"int", 4},      {"keycode", 28},
+     {"lineOrder", 1},   {"m33f", 36},    {"m33d", 72},
+     {"m44f", 64},       {"m44d", 128},   {"rational", 8},
+     {"tiledesc", 9},    {"timecode", 8}, {"v2i", 8},
+     {"v2f", 8},         {"v2d", 16},     {"v3i", 12},
+     {"v3f", 12},        {"v3d", 24},     {"deepImageState", 1}}};
+
+// Lengths inside an attribute must add up to its size.
 bool inner_lengths_fit(Cursor at, const std::string& type, std::uint64_t size) {
   const std::uint64_t end = at.at + size;
+  for (const auto& fixed : fixed_sizes)
+    if (type == fixed.type && size != fixed.bytes) return false;
+  if (type == "floatvector") return size % 4 == 0;
+  if (type == "chlist") {
+    // Name, and four numbers of four bytes, up to an empty name.
+    while (at.at < end) {
+      if (at.text().empty()) return !at.ended && at.at == end;
+      at.at += 16;
+    }
+    return false;
+  }
   if (type == "stringvector") {
     while (at.at + 4 <= end) {
       const std::uint64_t length = at.u32();

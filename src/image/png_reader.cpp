@@ -26,6 +26,20 @@ void get_bytes(png_structp png, png_bytep to, std::size_t count) {
   cursor->at += count;
 }
 
+// Whether the chunks before the pixels lie inside the file: libpng takes memory for a chunk before
+// it finds out.
+bool chunks_fit(const ByteSource& bytes) {
+  for (std::uint64_t at = 8;;) {
+    unsigned char head[8] = {};
+    if (bytes.read_at(at, head, 8) != 8) return false;
+    if (std::memcmp(head + 4, "IDAT", 4) == 0) return true;
+    const std::uint64_t length = (std::uint64_t{head[0]} << 24) | (std::uint64_t{head[1]} << 16) |
+                                 (std::uint64_t{head[2]} << 8) | head[3];
+    at += 12 + length;
+    if (at > bytes.size()) return false;
+  }
+}
+
 class PngReader : public ImageReader {
  public:
   PngReader(Bytes bytes, const ReadOptions& options)
@@ -33,6 +47,9 @@ class PngReader : public ImageReader {
   ~PngReader() override { png_destroy_read_struct(&png_, &info_, nullptr); }
 
   Result<void> start() {
+    if (!chunks_fit(*bytes_))
+      return fail(ErrorKind::truncated,
+                  bytes_->name() + " is incomplete: it ends before its pixels");
     if (auto open = begin(); !open) return open;
     describe();
     return {};
@@ -67,8 +84,8 @@ class PngReader : public ImageReader {
     bool good = png::guarded(png_, [&] {
       png_set_read_fn(png_, &cursor_, get_bytes);
       png_set_user_limits(png_, 0x7fffffff, 0x7fffffff);
-      png_set_chunk_malloc_max(png_, png_alloc_size_t{64} << 20);
-      png_set_chunk_cache_max(png_, 1000);
+      png_set_chunk_malloc_max(png_, png_alloc_size_t{8} << 20);
+      png_set_chunk_cache_max(png_, 64);
       png_read_info(png_, info_);
       png_get_IHDR(png_, info_, &width, &height, &depth, &kind, &interlace, nullptr, nullptr);
     });

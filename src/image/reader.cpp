@@ -7,6 +7,7 @@
 #include "image/exr_header.h"
 #include "image/exr_reader.h"
 #include "image/foreign.h"
+#include "image/luma.h"
 #include "image/png_reader.h"
 #include "image/to_working.h"
 
@@ -27,7 +28,7 @@ Result<std::unique_ptr<ImageReader>> open_stored(const Bytes& bytes, const ReadO
 Result<std::unique_ptr<ImageReader>> open_reader(const Bytes& bytes, const ReadOptions& options) {
   auto stored = open_stored(bytes, options);
   if (!stored || !options.working) return stored;
-  return to_working(std::move(*stored), *options.working);
+  return to_working(luma_to_rgb(std::move(*stored)), *options.working);
 }
 
 Result<std::unique_ptr<ImageReader>> open_reader(const std::string& path,

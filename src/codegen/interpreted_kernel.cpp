@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "codegen/array_layout.h"
 #include "codegen/kernel.h"
 #include "ir/interpreter.h"
 
@@ -18,24 +19,25 @@ std::size_t floats_of(const ir::Array& array) {
   return static_cast<std::size_t>(array.components) * static_cast<std::size_t>(array.capacity);
 }
 
-// Floats that the arrays of this kind of rate take, one after another.
-std::size_t memory_size(const std::vector<ir::Array>& arrays, bool of_sample) {
+// Floats that the arrays of rate sample take, one after another as planes.
+std::size_t sample_size(const std::vector<ir::Array>& arrays) {
   std::size_t size = 0;
-  for (const ir::Array& array : arrays) {
-    if ((array.rate == ir::Rate::sample) == of_sample) size += floats_of(array);
-  }
+  for (const ir::Array& array : arrays) size += array.rate == ir::Rate::sample ? floats_of(array) : 0;
   return size;
 }
 
 ArrayPlaces place_arrays(const std::vector<ir::Array>& arrays, float* frame, std::int32_t* frame_lengths,
                          float* sample) {
+  const FrameArrayLayout layout(arrays);
   ArrayPlaces places;
   places.sample_lengths.resize(arrays.size());
   for (std::size_t i = 0; i < arrays.size(); ++i) {
-    const bool of_sample = arrays[i].rate == ir::Rate::sample;
-    float*& next = of_sample ? sample : frame;
-    places.views.push_back({next, of_sample ? &places.sample_lengths[i] : &frame_lengths[i]});
-    next += floats_of(arrays[i]);
+    if (arrays[i].rate != ir::Rate::sample) {
+      places.views.push_back({frame + layout.offset[i], &frame_lengths[i]});
+      continue;
+    }
+    places.views.push_back({sample, &places.sample_lengths[i]});
+    sample += floats_of(arrays[i]);
   }
   return places;
 }
@@ -73,7 +75,7 @@ class InterpretedKernel final : public Kernel {
     const ir::Module& module = split_->module;
     const ir::Function& function = module.functions[split_->frame];
     state.uniforms.resize(module.inputs.size());
-    state.arrays.assign(memory_size(function.arrays, false), 0.0f);
+    state.arrays.assign(static_cast<std::size_t>(FrameArrayLayout(function.arrays).size), 0.0f);
     state.array_lengths.clear();
     for (const ir::Array& array : function.arrays) state.array_lengths.push_back(array.initial_length);
 
@@ -93,7 +95,7 @@ class InterpretedKernel final : public Kernel {
                    float* const* outputs, std::int64_t count) const override {
     const ir::Module& module = split_->module;
     const std::vector<ir::Array>& arrays = module.main().arrays;
-    scratch.memory.resize(memory_size(arrays, true));
+    scratch.memory.resize(sample_size(arrays));
     std::vector<std::int32_t> frame_lengths = state.array_lengths;
     frame_lengths.resize(arrays.size());
     // The program only reads the frame's arrays, through the same type of view as its own.

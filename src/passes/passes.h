@@ -37,7 +37,7 @@ void decide(ir::Module& module);
 
 // convert_ifs.cpp: small ifs without effects become selects.
 struct ConvertOptions {
-  int max_cost = 24;  // of both sides together, in additions
+  int max_cost = 32;  // of both sides together, in additions
 };
 void convert_ifs(ir::Module& module, const ConvertOptions& options = {});
 

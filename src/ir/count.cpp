@@ -16,7 +16,8 @@ void count_by_rate(const Function& function, const Region& region, RateCounts& c
   for (const Instruction& in : region.body) {
     for (const Region& inner : in.regions) count_by_rate(function, inner, counts);
     if (in.op <= Op::input) continue;
-    ++counts[static_cast<std::size_t>(rate_of(function, in.results.empty() ? in.operands : in.results))];
+    ++counts[static_cast<std::size_t>(
+        rate_of(function, in.results.empty() ? in.operands : in.results))];
   }
 }
 
@@ -30,7 +31,9 @@ std::size_t count_instructions(const Region& region) {
   return count;
 }
 
-std::size_t count_instructions(const Function& function) { return count_instructions(function.body); }
+std::size_t count_instructions(const Function& function) {
+  return count_instructions(function.body);
+}
 
 std::size_t count_instructions(const Module& module) {
   std::size_t count = 0;

@@ -14,8 +14,8 @@ std::size_t count_instructions(const Module& module);
 // Those of one operator.
 std::size_t count_instructions(const Region& region, Op op);
 
-// Operations by Rate, constants and inputs not counted. An instruction has the rate of its results; one without
-// results has that of its operands.
+// Operations by Rate, constants and inputs not counted. An instruction has the rate of its results;
+// one without results has that of its operands.
 using RateCounts = std::array<std::size_t, 3>;
 RateCounts count_by_rate(const Function& function);
 

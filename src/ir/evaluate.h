@@ -39,47 +39,88 @@ inline Bits evaluate(Op op, Bits a, Bits b, Bits c) {
   const auto fa = to_f32(a), fb = to_f32(b), fc = to_f32(c);
   const auto ia = static_cast<std::int32_t>(a), ib = static_cast<std::int32_t>(b);
   switch (op) {
-    case Op::fadd: return to_bits(fa + fb);
-    case Op::fsub: return to_bits(fa - fb);
-    case Op::fmul: return to_bits(fa * fb);
-    case Op::fdiv: return to_bits(fa / fb);
-    case Op::fma: return to_bits(std::fma(fa, fb, fc));
-    case Op::fneg: return a ^ 0x80000000u;
-    case Op::fabs: return a & 0x7fffffffu;
-    case Op::fsqrt: return to_bits(std::sqrt(fa));
-    case Op::fmin: return fa < fb ? a : b;
-    case Op::fmax: return fa > fb ? a : b;
-    case Op::ffloor: return to_bits(std::floor(fa));
-    case Op::fceil: return to_bits(std::ceil(fa));
-    case Op::ftrunc: return to_bits(std::trunc(fa));
-    case Op::fround: return to_bits(std::nearbyint(fa));
-    case Op::feq: return fa == fb;
-    case Op::fne: return fa != fb;
-    case Op::flt: return fa < fb;
-    case Op::fle: return fa <= fb;
-    case Op::iadd: return a + b;
-    case Op::isub: return a - b;
-    case Op::imul: return a * b;
-    case Op::iand: return a & b;
-    case Op::ior: return a | b;
-    case Op::ixor: return a ^ b;
-    case Op::ishl: return b > 31 ? 0 : a << b;
-    case Op::ishr: return b > 31 ? 0 : a >> b;
-    case Op::isar: return static_cast<Bits>(ia >> (b > 31 ? 31 : b));
-    case Op::ieq: return a == b;
-    case Op::ine: return a != b;
-    case Op::ilt: return ia < ib;
-    case Op::ile: return ia <= ib;
-    case Op::band: return a & b;
-    case Op::bor: return a | b;
-    case Op::bxor: return a ^ b;
-    case Op::bnot: return a ^ 1u;
-    case Op::select: return a ? b : c;
-    case Op::f2i: return evaluate_f2i(fa);
-    case Op::i2f: return to_bits(static_cast<float>(ia));
-    case Op::f2bits: return a;
-    case Op::bits2f: return a;
-    default: return 0;
+    case Op::fadd:
+      return to_bits(fa + fb);
+    case Op::fsub:
+      return to_bits(fa - fb);
+    case Op::fmul:
+      return to_bits(fa * fb);
+    case Op::fdiv:
+      return to_bits(fa / fb);
+    case Op::fma:
+      return to_bits(std::fma(fa, fb, fc));
+    case Op::fneg:
+      return a ^ 0x80000000u;
+    case Op::fabs:
+      return a & 0x7fffffffu;
+    case Op::fsqrt:
+      return to_bits(std::sqrt(fa));
+    case Op::fmin:
+      return fa < fb ? a : b;
+    case Op::fmax:
+      return fa > fb ? a : b;
+    case Op::ffloor:
+      return to_bits(std::floor(fa));
+    case Op::fceil:
+      return to_bits(std::ceil(fa));
+    case Op::ftrunc:
+      return to_bits(std::trunc(fa));
+    case Op::fround:
+      return to_bits(std::nearbyint(fa));
+    case Op::feq:
+      return fa == fb;
+    case Op::fne:
+      return fa != fb;
+    case Op::flt:
+      return fa < fb;
+    case Op::fle:
+      return fa <= fb;
+    case Op::iadd:
+      return a + b;
+    case Op::isub:
+      return a - b;
+    case Op::imul:
+      return a * b;
+    case Op::iand:
+      return a & b;
+    case Op::ior:
+      return a | b;
+    case Op::ixor:
+      return a ^ b;
+    case Op::ishl:
+      return b > 31 ? 0 : a << b;
+    case Op::ishr:
+      return b > 31 ? 0 : a >> b;
+    case Op::isar:
+      return static_cast<Bits>(ia >> (b > 31 ? 31 : b));
+    case Op::ieq:
+      return a == b;
+    case Op::ine:
+      return a != b;
+    case Op::ilt:
+      return ia < ib;
+    case Op::ile:
+      return ia <= ib;
+    case Op::band:
+      return a & b;
+    case Op::bor:
+      return a | b;
+    case Op::bxor:
+      return a ^ b;
+    case Op::bnot:
+      return a ^ 1u;
+    case Op::select:
+      return a ? b : c;
+    case Op::f2i:
+      return evaluate_f2i(fa);
+    case Op::i2f:
+      return to_bits(static_cast<float>(ia));
+    case Op::f2bits:
+      return a;
+    case Op::bits2f:
+      return a;
+    default:
+      return 0;
   }
 }
 
@@ -97,7 +138,8 @@ inline Bits evaluate_table(const Module& module, Op op, std::int32_t table, Bits
   }
   const auto& entries = module.byte_tables[index].entries;
   Bits found = 0;
-  for (unsigned shift = 0; shift < 32; shift += 8) found |= Bits{entries[(a >> shift) & 255]} << shift;
+  for (unsigned shift = 0; shift < 32; shift += 8)
+    found |= Bits{entries[(a >> shift) & 255]} << shift;
   return found;
 }
 

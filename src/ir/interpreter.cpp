@@ -1,4 +1,5 @@
-// Running the IR one sample and one instruction at a time. See the header; the operators are in evaluate.h.
+// Running the IR one sample and one instruction at a time. See the header; the operators are in
+// evaluate.h.
 #include "ir/interpreter.h"
 
 #include <algorithm>
@@ -24,13 +25,15 @@ ArrayMemory::ArrayMemory(const Function& function) : function_(&function) {
 
 void ArrayMemory::reset() {
   std::ranges::fill(elements_, 0.0f);
-  for (std::size_t i = 0; i < lengths_.size(); ++i) lengths_[i] = function_->arrays[i].initial_length;
+  for (std::size_t i = 0; i < lengths_.size(); ++i)
+    lengths_[i] = function_->arrays[i].initial_length;
 }
 
-Interpreter::Interpreter(const Module& module) : module_(&module), frames_(module.functions.size()) {}
+Interpreter::Interpreter(const Module& module)
+    : module_(&module), frames_(module.functions.size()) {}
 
-Outcome Interpreter::run(std::uint32_t function, std::span<const Bits> arguments, const Environment& environment,
-                         std::span<Bits> results) {
+Outcome Interpreter::run(std::uint32_t function, std::span<const Bits> arguments,
+                         const Environment& environment, std::span<Bits> results) {
   environment_ = &environment;
   entered_ = &module_->functions[function];
   turns_left_ = environment.max_turns;
@@ -74,14 +77,20 @@ bool Interpreter::run_instruction(const Instruction& in, Frame& frame) {
   // Where component `component` of element `e` lies.
   const auto element = [&](std::int32_t e) -> float& {
     const auto capacity = static_cast<std::size_t>(entered_->arrays[index].capacity);
-    return environment_->arrays[index].planes[static_cast<std::size_t>(in.component) * capacity +
-                                              static_cast<std::size_t>(e)];
+    return environment_->arrays[index]
+        .planes[static_cast<std::size_t>(in.component) * capacity + static_cast<std::size_t>(e)];
   };
   switch (in.op) {
     case Op::const_f32:
-    case Op::const_i32: frame[in.result()] = static_cast<Bits>(in.imm); return true;
-    case Op::const_bool: frame[in.result()] = in.imm != 0; return true;
-    case Op::input: frame[in.result()] = to_bits(environment_->inputs[index]); return true;
+    case Op::const_i32:
+      frame[in.result()] = static_cast<Bits>(in.imm);
+      return true;
+    case Op::const_bool:
+      frame[in.result()] = in.imm != 0;
+      return true;
+    case Op::input:
+      frame[in.result()] = to_bits(environment_->inputs[index]);
+      return true;
     case Op::table_f32:
     case Op::table_i32:
     case Op::bytes_add:
@@ -98,24 +107,34 @@ bool Interpreter::run_instruction(const Instruction& in, Frame& frame) {
     }
     case Op::array_store: {
       const auto e = static_cast<std::int32_t>(frame[in.operands[0]]);
-      if (e >= 0 && e < entered_->arrays[index].capacity) element(e) = to_f32(frame[in.operands[1]]);
+      if (e >= 0 && e < entered_->arrays[index].capacity)
+        element(e) = to_f32(frame[in.operands[1]]);
       return true;
     }
     case Op::array_length:
       frame[in.result()] = static_cast<Bits>(*environment_->arrays[index].length);
       return true;
-    case Op::array_resize: resize_array(in, frame); return true;
-    case Op::check: return frame[in.operands[0]] != 0 || stop(End::failed_check, in.imm);
-    case Op::call: return run_call(in, frame);
-    case Op::external: run_external(in, frame); return true;
+    case Op::array_resize:
+      resize_array(in, frame);
+      return true;
+    case Op::check:
+      return frame[in.operands[0]] != 0 || stop(End::failed_check, in.imm);
+    case Op::call:
+      return run_call(in, frame);
+    case Op::external:
+      run_external(in, frame);
+      return true;
     case Op::if_: {
       const Region& region = in.regions[frame[in.operands[0]] ? 0 : 1];
       if (!run_region(region, frame)) return false;
-      for (std::size_t i = 0; i < in.results.size(); ++i) frame[in.results[i]] = frame[region.yields[i]];
+      for (std::size_t i = 0; i < in.results.size(); ++i)
+        frame[in.results[i]] = frame[region.yields[i]];
       return true;
     }
-    case Op::loop: return run_loop(in, frame);
-    default: return true;
+    case Op::loop:
+      return run_loop(in, frame);
+    default:
+      return true;
   }
 }
 
@@ -127,7 +146,8 @@ bool Interpreter::run_loop(const Instruction& in, Frame& frame) {
   while (true) {
     if (!run_region(head, frame)) return false;
     if (!frame[head.yields[0]]) break;
-    if (environment_->cancel && environment_->cancel->load(std::memory_order_relaxed)) return stop(End::cancelled);
+    if (environment_->cancel && environment_->cancel->load(std::memory_order_relaxed))
+      return stop(End::cancelled);
     if (turns_left_ == 0) return stop(End::out_of_turns);
     --turns_left_;
     for (std::size_t i = 0; i < carried; ++i) frame[body.params[i]] = frame[head.params[i]];
@@ -143,7 +163,8 @@ bool Interpreter::run_call(const Instruction& in, Frame& frame) {
   const Region& body = module_->functions[callee].body;
   enter(callee);
   Frame& inner = frames_[callee];
-  for (std::size_t i = 0; i < in.operands.size(); ++i) inner[body.params[i]] = frame[in.operands[i]];
+  for (std::size_t i = 0; i < in.operands.size(); ++i)
+    inner[body.params[i]] = frame[in.operands[i]];
   if (!run_region(body, inner)) return false;
   for (std::size_t i = 0; i < in.results.size(); ++i) frame[in.results[i]] = inner[body.yields[i]];
   return true;
@@ -154,9 +175,11 @@ void Interpreter::run_external(const Instruction& in, Frame& frame) {
   for (const Value operand : in.operands) external_arguments_.push_back(to_f32(frame[operand]));
   external_results_.assign(in.results.size(), 0.0f);
   if (environment_->external) {
-    (*environment_->external)(static_cast<std::uint32_t>(in.imm), external_arguments_, external_results_);
+    (*environment_->external)(static_cast<std::uint32_t>(in.imm), external_arguments_,
+                              external_results_);
   }
-  for (std::size_t i = 0; i < in.results.size(); ++i) frame[in.results[i]] = to_bits(external_results_[i]);
+  for (std::size_t i = 0; i < in.results.size(); ++i)
+    frame[in.results[i]] = to_bits(external_results_[i]);
 }
 
 void Interpreter::resize_array(const Instruction& in, const Frame& frame) {
@@ -166,7 +189,8 @@ void Interpreter::resize_array(const Instruction& in, const Frame& frame) {
   const std::int32_t length = std::clamp(wanted, 0, array.capacity);
   // Elements that come into being are 0.
   for (std::int32_t c = 0; c < array.components && length > *view.length; ++c) {
-    float* plane = view.planes + static_cast<std::size_t>(c) * static_cast<std::size_t>(array.capacity);
+    float* plane =
+        view.planes + static_cast<std::size_t>(c) * static_cast<std::size_t>(array.capacity);
     std::fill(plane + *view.length, plane + length, 0.0f);
   }
   *view.length = length;
@@ -176,8 +200,8 @@ Interpreted interpret(const Module& module, std::uint32_t function, std::span<co
                       const ExternalCallback* external, std::uint64_t max_turns) {
   const Function& entered = module.functions[function];
   ArrayMemory memory(entered);
-  const Environment environment{.inputs = inputs, .arrays = memory.views(), .external = external,
-                                .max_turns = max_turns};
+  const Environment environment{
+      .inputs = inputs, .arrays = memory.views(), .external = external, .max_turns = max_turns};
   Interpreted interpreted;
   interpreted.results.resize(entered.body.yields.size());
   interpreted.outcome = Interpreter(module).run(function, {}, environment, interpreted.results);

@@ -1,5 +1,5 @@
-// The plain scalar interpreter of the IR: the definition of what a program means. Compiled kernels and passes are
-// tested against it bit for bit.
+// The plain scalar interpreter of the IR: the definition of what a program means. Compiled kernels
+// and passes are tested against it bit for bit.
 #pragma once
 
 #include <atomic>
@@ -35,16 +35,17 @@ class ArrayMemory {
   std::vector<ArrayView> views_;
 };
 
-using ExternalCallback = std::function<void(std::uint32_t external, std::span<const float> arguments,
-                                            std::span<float> results)>;
+using ExternalCallback = std::function<void(
+    std::uint32_t external, std::span<const float> arguments, std::span<float> results)>;
 
 // What a run may read and write besides its arguments.
 struct Environment {
-  std::span<const float> inputs;       // one per Module::inputs
-  std::span<const ArrayView> arrays;   // one per Function::arrays of the function run
-  const ExternalCallback* external = nullptr;     // none: externals give 0
-  const std::atomic<bool>* cancel = nullptr;      // polled by every turn of a loop
-  std::uint64_t max_turns = std::numeric_limits<std::uint64_t>::max();  // turns of all loops together
+  std::span<const float> inputs;               // one per Module::inputs
+  std::span<const ArrayView> arrays;           // one per Function::arrays of the function run
+  const ExternalCallback* external = nullptr;  // none: externals give 0
+  const std::atomic<bool>* cancel = nullptr;   // polled by every turn of a loop
+  std::uint64_t max_turns =
+      std::numeric_limits<std::uint64_t>::max();  // turns of all loops together
 };
 
 enum class End : std::uint8_t { finished, failed_check, cancelled, out_of_turns };
@@ -54,15 +55,15 @@ struct Outcome {
   std::int32_t check = -1;  // index into Module::checks where one failed
 };
 
-// Runs functions of one module. Keeps a frame of values per function, so a run allocates nothing; not for sharing
-// between threads. The module must pass the verifier.
+// Runs functions of one module. Keeps a frame of values per function, so a run allocates nothing;
+// not for sharing between threads. The module must pass the verifier.
 class Interpreter {
  public:
   explicit Interpreter(const Module& module);
 
   // `results` gets the function's yields as they are (NaN as computed) where the run finished.
-  Outcome run(std::uint32_t function, std::span<const Bits> arguments, const Environment& environment,
-              std::span<Bits> results);
+  Outcome run(std::uint32_t function, std::span<const Bits> arguments,
+              const Environment& environment, std::span<Bits> results);
 
  private:
   using Frame = std::vector<Bits>;

@@ -1,4 +1,5 @@
-// The IR's readable text form (`--emit ir`) and its parser. What is printed can be read back exactly.
+// The IR's readable text form (`--emit ir`) and its parser. What is printed can be read back
+// exactly.
 //
 //   input 0 "x" sample
 //   output 0 "color.0"
@@ -14,7 +15,8 @@
 //     yield %3
 //   }
 //
-// `!c` and `!f` mark values of rate constant and frame; `:f`, `:i`, `:b` give types that do not follow from the operator.
+// `!c` and `!f` mark values of rate constant and frame; `:f`, `:i`, `:b` give types that do not
+// follow from the operator.
 #pragma once
 
 #include <expected>

@@ -1,4 +1,5 @@
-// Text -> module. See text.h for the form. Words are separated by white space, `#` starts a comment.
+// Text -> module. See text.h for the form. Words are separated by white space, `#` starts a
+// comment.
 #include <charconv>
 #include <limits>
 #include <unordered_map>
@@ -10,7 +11,8 @@
 namespace pse::ir {
 namespace {
 
-// A value's number may not be far beyond what the text defines, so that a short text cannot ask for all memory.
+// A value's number may not be far beyond what the text defines, so that a short text cannot ask for
+// all memory.
 constexpr std::uint32_t max_value = 1u << 24;
 constexpr int max_depth = 200;
 
@@ -42,7 +44,8 @@ class Words {
     if (!take_if(wanted)) fail("'" + std::string(wanted) + "' was expected");
   }
   [[noreturn]] void fail(const std::string& sentence) const {
-    throw Failure{"line " + std::to_string(line_) + ": " + sentence + ", not '" + std::string(word_) + "'"};
+    throw Failure{"line " + std::to_string(line_) + ": " + sentence + ", not '" +
+                  std::string(word_) + "'"};
   }
 
  private:
@@ -111,7 +114,8 @@ class Parser {
     const std::string_view word = words_.peek();
     Number value{};
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc{} || end != word.data() + word.size()) words_.fail("a number was expected");
+    if (error != std::errc{} || end != word.data() + word.size())
+      words_.fail("a number was expected");
     words_.take();
     return value;
   }
@@ -125,7 +129,8 @@ class Parser {
     if (!word.starts_with("0x")) return number<float>();
     Bits bits = 0;
     const auto [end, error] = std::from_chars(word.data() + 2, word.data() + word.size(), bits, 16);
-    if (error != std::errc{} || end != word.data() + word.size()) words_.fail("a float's bits were expected");
+    if (error != std::errc{} || end != word.data() + word.size())
+      words_.fail("a float's bits were expected");
     words_.take();
     return to_f32(bits);
   }
@@ -150,7 +155,8 @@ class Parser {
 
   Rate rate() {
     const std::string_view word = words_.peek();
-    if (word != "constant" && word != "frame" && word != "sample") words_.fail("a rate was expected");
+    if (word != "constant" && word != "frame" && word != "sample")
+      words_.fail("a rate was expected");
     words_.take();
     return word == "constant" ? Rate::constant : word == "frame" ? Rate::frame : Rate::sample;
   }
@@ -228,8 +234,10 @@ class Parser {
     Value value = no_value;
     const char* end = word.data() + word.size();
     const bool marked = word.starts_with('%');
-    const auto read = marked ? std::from_chars(word.data() + 1, end, value) : std::from_chars_result{end, {}};
-    if (!marked || read.ec != std::errc{} || read.ptr != end || value >= max_value) words_.fail("a value was expected");
+    const auto read =
+        marked ? std::from_chars(word.data() + 1, end, value) : std::from_chars_result{end, {}};
+    if (!marked || read.ec != std::errc{} || read.ptr != end || value >= max_value)
+      words_.fail("a value was expected");
     return value;
   }
 
@@ -243,7 +251,9 @@ class Parser {
       word.remove_suffix(2);
     }
     if (word.size() > 2 && word[word.size() - 2] == '!') {
-      info.rate = word.back() == 'c' ? Rate::constant : word.back() == 'f' ? Rate::frame : Rate::sample;
+      info.rate = word.back() == 'c'   ? Rate::constant
+                  : word.back() == 'f' ? Rate::frame
+                                       : Rate::sample;
       word.remove_suffix(2);
     }
     const Value value = value_number(word);
@@ -305,7 +315,9 @@ class Parser {
 
   void immediate(Instruction& in) {
     switch (in.op) {
-      case Op::const_f32: in.imm = std::bit_cast<std::int32_t>(floating()); break;
+      case Op::const_f32:
+        in.imm = std::bit_cast<std::int32_t>(floating());
+        break;
       case Op::const_bool:
         in.imm = words_.peek() == "true";
         if (!words_.take_if("true")) words_.expect("false");
@@ -330,8 +342,11 @@ class Parser {
       case Op::array_resize:
       case Op::check:
       case Op::call:
-      case Op::external: in.imm = number<std::int32_t>(); break;
-      default: break;
+      case Op::external:
+        in.imm = number<std::int32_t>();
+        break;
+      default:
+        break;
     }
   }
 

@@ -68,7 +68,8 @@ class Printer {
     quoted(name);
   }
 
-  // The shortest decimal that reads back as the same float; a NaN other than the usual one as its bits.
+  // The shortest decimal that reads back as the same float; a NaN other than the usual one as its
+  // bits.
   void floating(float value) {
     text_ += ' ';
     char digits[32];
@@ -103,7 +104,10 @@ class Printer {
 
   void span(const Span& place) {
     if (!options_.spans || !place.valid()) return;
-    text_.append(" @").append(std::to_string(place.file)).append(":").append(std::to_string(place.begin));
+    text_.append(" @")
+        .append(std::to_string(place.file))
+        .append(":")
+        .append(std::to_string(place.begin));
     text_.append(":").append(std::to_string(place.end));
   }
 
@@ -128,7 +132,8 @@ class Printer {
     text_ += "}\n";
   }
 
-  // A value where it is defined: with the mark of its rate, and its type where that does not follow.
+  // A value where it is defined: with the mark of its rate, and its type where that does not
+  // follow.
   void definition(Value value, bool with_type) {
     const ValueInfo& info = function_->values[value];
     text_.append("%").append(std::to_string(value));
@@ -183,8 +188,12 @@ class Printer {
 
   void immediate(const Instruction& in) {
     switch (in.op) {
-      case Op::const_f32: floating(in.imm_f32()); break;
-      case Op::const_bool: text_ += in.imm ? " true" : " false"; break;
+      case Op::const_f32:
+        floating(in.imm_f32());
+        break;
+      case Op::const_bool:
+        text_ += in.imm ? " true" : " false";
+        break;
       case Op::array_load:
       case Op::array_store:
         number(in.imm);
@@ -199,8 +208,11 @@ class Printer {
       case Op::array_resize:
       case Op::check:
       case Op::call:
-      case Op::external: number(in.imm); break;
-      default: break;
+      case Op::external:
+        number(in.imm);
+        break;
+      default:
+        break;
     }
   }
 
@@ -226,7 +238,8 @@ class Printer {
     std::string_view name;
     if (in.op == Op::input && index < module_.inputs.size()) name = module_.inputs[index].name;
     if (in.op == Op::call && index < module_.functions.size()) name = module_.functions[index].name;
-    if (in.op == Op::external && index < module_.externals.size()) name = module_.externals[index].name;
+    if (in.op == Op::external && index < module_.externals.size())
+      name = module_.externals[index].name;
     if (in.op == Op::check && index < module_.checks.size()) name = module_.checks[index].message;
     if (name.empty() || name.find('\n') != std::string_view::npos) return;
     text_.append("  # ").append(name);
@@ -241,6 +254,8 @@ class Printer {
 
 }  // namespace
 
-std::string print(const Module& module, const TextOptions& options) { return Printer(module, options).run(); }
+std::string print(const Module& module, const TextOptions& options) {
+  return Printer(module, options).run();
+}
 
 }  // namespace pse::ir

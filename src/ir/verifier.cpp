@@ -39,20 +39,24 @@ class Verifier {
     if (complaints_.size() < max_complaints) complaints_.push_back(where_ + std::move(sentence));
   }
   void complain(const Instruction& in, const std::string& sentence) {
-    const std::string result = in.results.empty() ? "" : "%" + std::to_string(in.results.front()) + " = ";
+    const std::string result =
+        in.results.empty() ? "" : "%" + std::to_string(in.results.front()) + " = ";
     complain(result + std::string(info(in.op).name) + ": " + sentence);
   }
 
   void check_tables() {
-    for (const FloatTable& table : module_.float_tables) check_size(table.name, table.entries.size());
+    for (const FloatTable& table : module_.float_tables)
+      check_size(table.name, table.entries.size());
     for (const IntTable& table : module_.int_tables) check_size(table.name, table.entries.size());
     for (const ByteTable& table : module_.byte_tables) {
-      if (table.entries.size() != 256) complain("byte table '" + table.name + "' must have 256 entries");
+      if (table.entries.size() != 256)
+        complain("byte table '" + table.name + "' must have 256 entries");
     }
   }
 
   void check_size(const std::string& name, std::size_t size) {
-    if (!std::has_single_bit(size)) complain("the size of table '" + name + "' must be a power of two");
+    if (!std::has_single_bit(size))
+      complain("the size of table '" + name + "' must be a power of two");
   }
 
   void find_called(const Region& region) {
@@ -71,7 +75,8 @@ class Verifier {
     visible_.assign(function_->values.size(), false);
     if (is_called_ && !function_->arrays.empty()) complain("a called function has no arrays");
     for (const Array& array : function_->arrays) {
-      if (array.components < 1 || array.capacity < 0) complain("array '" + array.name + "' has no size");
+      if (array.components < 1 || array.capacity < 0)
+        complain("array '" + array.name + "' has no size");
       if (array.initial_length < 0 || array.initial_length > array.capacity) {
         complain("the initial length of array '" + array.name + "' is not within its capacity");
       }
@@ -93,7 +98,8 @@ class Verifier {
   }
 
   void define(Value value, std::vector<Value>& local) {
-    if (value >= defined_.size()) return complain("%" + std::to_string(value) + " is not among the function's values");
+    if (value >= defined_.size())
+      return complain("%" + std::to_string(value) + " is not among the function's values");
     if (defined_[value]) return complain("%" + std::to_string(value) + " is defined twice");
     defined_[value] = true;
     visible_[value] = true;
@@ -108,7 +114,9 @@ class Verifier {
   }
 
   // The type of a value that may be out of range; f then, since the range has been complained of.
-  Type type(Value value) const { return value < function_->values.size() ? function_->values[value].type : Type::f32; }
+  Type type(Value value) const {
+    return value < function_->values.size() ? function_->values[value].type : Type::f32;
+  }
 
   void check_instruction(const Instruction& in) {
     const OpInfo& op = info(in.op);
@@ -131,7 +139,8 @@ class Verifier {
       for (std::size_t i = 0; i < in.operands.size(); ++i) {
         const Type actual = type(in.operands[i]);
         const bool generic = op.operands[i] == 'T';
-        const bool right = generic ? actual == type(in.operands.back()) : matches(op.operands[i], actual);
+        const bool right =
+            generic ? actual == type(in.operands.back()) : matches(op.operands[i], actual);
         if (!right) complain(in, "operand " + std::to_string(i + 1) + " has the wrong type");
       }
     }
@@ -140,13 +149,15 @@ class Verifier {
     for (std::size_t i = 0; i < in.results.size(); ++i) {
       const Type actual = type(in.results[i]);
       const bool generic = op.results[i] == 'T';
-      const bool right = generic ? actual == type(in.operands.back()) : matches(op.results[i], actual);
+      const bool right =
+          generic ? actual == type(in.operands.back()) : matches(op.results[i], actual);
       if (!right) complain(in, "the result has the wrong type");
     }
   }
 
   void check_range(const Instruction& in, std::size_t size, const char* what) {
-    if (in.imm < 0 || static_cast<std::size_t>(in.imm) >= size) complain(in, std::string("there is no such ") + what);
+    if (in.imm < 0 || static_cast<std::size_t>(in.imm) >= size)
+      complain(in, std::string("there is no such ") + what);
   }
 
   void check_index(const Instruction& in) {
@@ -154,43 +165,53 @@ class Verifier {
       case Op::input:
         if (is_called_) complain(in, "a called function has no inputs");
         return check_range(in, module_.inputs.size(), "input");
-      case Op::table_f32: return check_range(in, module_.float_tables.size(), "float table");
-      case Op::table_i32: return check_range(in, module_.int_tables.size(), "integer table");
-      case Op::bytes_lookup: return check_range(in, module_.byte_tables.size(), "byte table");
+      case Op::table_f32:
+        return check_range(in, module_.float_tables.size(), "float table");
+      case Op::table_i32:
+        return check_range(in, module_.int_tables.size(), "integer table");
+      case Op::bytes_lookup:
+        return check_range(in, module_.byte_tables.size(), "byte table");
       case Op::array_load:
       case Op::array_store:
       case Op::array_length:
-      case Op::array_resize: return check_array(in);
+      case Op::array_resize:
+        return check_array(in);
       case Op::check:
         if (is_called_) complain(in, "a called function is pure");
         return check_range(in, module_.checks.size(), "check");
-      case Op::call: return check_call(in);
-      case Op::external: return check_external(in);
-      default: return;
+      case Op::call:
+        return check_call(in);
+      case Op::external:
+        return check_external(in);
+      default:
+        return;
     }
   }
 
   void check_array(const Instruction& in) {
     if (is_called_) complain(in, "a called function is pure");
     const auto index = static_cast<std::size_t>(in.imm);
-    if (in.imm < 0 || index >= function_->arrays.size()) return complain(in, "there is no such array");
+    if (in.imm < 0 || index >= function_->arrays.size())
+      return complain(in, "there is no such array");
     const bool has_component = in.op == Op::array_load || in.op == Op::array_store;
-    if (has_component && (in.component < 0 || in.component >= function_->arrays[index].components)) {
+    if (has_component &&
+        (in.component < 0 || in.component >= function_->arrays[index].components)) {
       complain(in, "the array has no such component");
     }
   }
 
   void check_call(const Instruction& in) {
     const auto index = static_cast<std::size_t>(in.imm);
-    if (in.imm < 0 || index >= module_.functions.size()) return complain(in, "there is no such function");
+    if (in.imm < 0 || index >= module_.functions.size())
+      return complain(in, "there is no such function");
     const Function& callee = module_.functions[index];
     check_types(in, in.operands, callee.body.params, &callee, "operands");
     check_types(in, in.results, callee.body.yields, &callee, "results");
   }
 
   // `given` in this function against `wanted` in `owner`.
-  void check_types(const Instruction& in, std::span<const Value> given, std::span<const Value> wanted,
-                   const Function* owner, const std::string& what) {
+  void check_types(const Instruction& in, std::span<const Value> given,
+                   std::span<const Value> wanted, const Function* owner, const std::string& what) {
     if (given.size() != wanted.size()) return complain(in, "wrong number of " + what);
     for (std::size_t i = 0; i < given.size(); ++i) {
       if (wanted[i] >= owner->values.size() || type(given[i]) != owner->values[wanted[i]].type) {
@@ -202,10 +223,13 @@ class Verifier {
 
   void check_external(const Instruction& in) {
     const auto index = static_cast<std::size_t>(in.imm);
-    if (in.imm < 0 || index >= module_.externals.size()) return complain(in, "there is no such external");
+    if (in.imm < 0 || index >= module_.externals.size())
+      return complain(in, "there is no such external");
     const External& external = module_.externals[index];
-    if (std::cmp_not_equal(in.operands.size(), external.arguments)) complain(in, "wrong number of operands");
-    if (std::cmp_not_equal(in.results.size(), external.results)) complain(in, "wrong number of results");
+    if (std::cmp_not_equal(in.operands.size(), external.arguments))
+      complain(in, "wrong number of operands");
+    if (std::cmp_not_equal(in.results.size(), external.results))
+      complain(in, "wrong number of results");
     for (const Value value : in.operands) {
       if (type(value) != Type::f32) complain(in, "an external takes floats");
     }
@@ -240,7 +264,8 @@ class Verifier {
     const Function& entry = module_.main();
     if (!entry.body.params.empty()) complain("the entry function has no parameters");
     if (called_[module_.entry]) complain("the entry function is never called");
-    if (entry.body.yields.size() != module_.outputs.size()) complain("the entry function yields one value per output");
+    if (entry.body.yields.size() != module_.outputs.size())
+      complain("the entry function yields one value per output");
     for (const Value value : entry.body.yields) {
       if (value < entry.values.size() && entry.values[value].type != Type::f32) {
         complain("outputs are floats");

@@ -1,5 +1,5 @@
-// Says what is wrong with a module: types, dominance, shapes of regions, indices, the call graph. Every pass must give
-// a module without complaints; the interpreter and the emitters rely on it.
+// Says what is wrong with a module: types, dominance, shapes of regions, indices, the call graph.
+// Every pass must give a module without complaints; the interpreter and the emitters rely on it.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
-// Numbers values anew in the order of their definition, so that frames and tables hold only what is there.
+// Numbers values anew in the order of their definition, so that frames and tables hold only what is
+// there.
 #include <utility>
 
 #include "passes/passes.h"
@@ -9,7 +10,8 @@ namespace {
 
 class Compactor {
  public:
-  explicit Compactor(ir::Function& function) : function_(function), renaming_(function.values.size()) {}
+  explicit Compactor(ir::Function& function)
+      : function_(function), renaming_(function.values.size()) {}
 
   void run() {
     renumber(function_.body);

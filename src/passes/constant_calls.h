@@ -12,8 +12,10 @@ namespace pse::passes {
 class ConstantCalls {
  public:
   explicit ConstantCalls(const ir::Module& module);
-  // The results of a function; nothing where it asks an external, turns for long, or the work done so far is enough.
-  std::optional<std::vector<ir::Bits>> run(std::uint32_t function, const std::vector<ir::Bits>& arguments);
+  // The results of a function; nothing where it asks an external, turns for long, or the work done
+  // so far is enough.
+  std::optional<std::vector<ir::Bits>> run(std::uint32_t function,
+                                           const std::vector<ir::Bits>& arguments);
 
  private:
   struct Size {

@@ -1,5 +1,6 @@
-// If-conversion: an if whose sides are small and without effects becomes straight code and a select per result.
-// Inner ifs first, so that a chain of small ones becomes selects as far as the cost allows.
+// If-conversion: an if whose sides are small and without effects becomes straight code and a select
+// per result. Inner ifs first, so that a chain of small ones becomes selects as far as the cost
+// allows.
 #include <utility>
 
 #include "passes/passes.h"

@@ -1,5 +1,5 @@
-// Conditions that ranges decide: an index that was clamped is within its array, so its check is true. One walk in order
-// of definition; of loops only counters are understood.
+// Conditions that ranges decide: an index that was clamped is within its array, so its check is
+// true. One walk in order of definition; of loops only counters are understood.
 #include <bit>
 #include <cmath>
 #include <optional>
@@ -27,10 +27,15 @@ Range range_of_table(const auto& entries) {
 class Decider {
  public:
   Decider(const ir::Module& module, Function& function)
-      : function_(function), ranges_(function.values.size()), definitions_(function.values.size(), nullptr) {
-    for (const ir::FloatTable& table : module.float_tables) float_tables_.push_back(range_of_table(table.entries));
-    for (const ir::IntTable& table : module.int_tables) int_tables_.push_back(range_of_table(table.entries));
-    for (std::size_t i = 0; i < ranges_.size(); ++i) ranges_[i] = full_range(function.values[i].type);
+      : function_(function),
+        ranges_(function.values.size()),
+        definitions_(function.values.size(), nullptr) {
+    for (const ir::FloatTable& table : module.float_tables)
+      float_tables_.push_back(range_of_table(table.entries));
+    for (const ir::IntTable& table : module.int_tables)
+      int_tables_.push_back(range_of_table(table.entries));
+    for (std::size_t i = 0; i < ranges_.size(); ++i)
+      ranges_[i] = full_range(function.values[i].type);
   }
 
   void run() {
@@ -54,7 +59,8 @@ class Decider {
       if (has_regions(in.op) || in.results.size() != 1) continue;
       Range& range = ranges_[in.result()];
       range = find_range(in);
-      const bool is_known = function_.values[in.result()].type == Type::boolean && range.lo == range.hi;
+      const bool is_known =
+          function_.values[in.result()].type == Type::boolean && range.lo == range.hi;
       if (!is_known || is_constant(in.op)) continue;
       in.op = Op::const_bool;
       in.imm = range.lo != 0;
@@ -64,16 +70,25 @@ class Decider {
 
   Range find_range(const Instruction& in) const {
     const Type type = function_.values[in.result()].type;
-    const auto operand = [&](std::size_t i) { return i < in.operands.size() ? ranges_[in.operands[i]] : Range{}; };
+    const auto operand = [&](std::size_t i) {
+      return i < in.operands.size() ? ranges_[in.operands[i]] : Range{};
+    };
     switch (in.op) {
-      case Op::const_f32: return exactly(double{in.imm_f32()});
-      case Op::const_i32: return exactly(double{static_cast<double>(in.imm)});
-      case Op::const_bool: return exactly(in.imm != 0);
-      case Op::table_f32: return float_tables_[static_cast<std::size_t>(in.imm)];
-      case Op::table_i32: return int_tables_[static_cast<std::size_t>(in.imm)];
+      case Op::const_f32:
+        return exactly(double{in.imm_f32()});
+      case Op::const_i32:
+        return exactly(double{static_cast<double>(in.imm)});
+      case Op::const_bool:
+        return exactly(in.imm != 0);
+      case Op::table_f32:
+        return float_tables_[static_cast<std::size_t>(in.imm)];
+      case Op::table_i32:
+        return int_tables_[static_cast<std::size_t>(in.imm)];
       case Op::array_length:
-        return {0, static_cast<double>(function_.arrays[static_cast<std::size_t>(in.imm)].capacity), false};
-      default: break;
+        return {0, static_cast<double>(function_.arrays[static_cast<std::size_t>(in.imm)].capacity),
+                false};
+      default:
+        break;
     }
     // A square is not negative.
     Range range = range_of(in.op, operand(0), operand(1), operand(2), type);

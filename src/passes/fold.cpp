@@ -1,4 +1,5 @@
-// Constant folding and exact algebra, in one walk in order of definition. The rules are in fold_*.cpp.
+// Constant folding and exact algebra, in one walk in order of definition. The rules are in
+// fold_*.cpp.
 #include <utility>
 
 #include "passes/constant_calls.h"
@@ -18,7 +19,10 @@ using ir::Value;
 class FoldWalk {
  public:
   FoldWalk(ir::Module& module, Function& function, ConstantCalls& calls)
-      : module_(module), function_(function), calls_(calls), folder_(module, function),
+      : module_(module),
+        function_(function),
+        calls_(calls),
+        folder_(module, function),
         renaming_(function.values.size()) {}
 
   void run() { walk(function_.body); }
@@ -37,15 +41,23 @@ class FoldWalk {
     for (Instruction& in : region.body) {
       renaming_.apply(in.operands);
       switch (in.op) {
-        case Op::check: fold_check(in, out); break;
-        case Op::call: fold_call(in, out); break;
-        case Op::if_: fold_if(in, out); break;
+        case Op::check:
+          fold_check(in, out);
+          break;
+        case Op::call:
+          fold_call(in, out);
+          break;
+        case Op::if_:
+          fold_if(in, out);
+          break;
         case Op::loop:
           walk(in.regions[0]);
           walk(in.regions[1]);
           out.push_back(std::move(in));
           break;
-        default: fold_plain(in, out); break;
+        default:
+          fold_plain(in, out);
+          break;
       }
     }
   }
@@ -70,15 +82,19 @@ class FoldWalk {
     }
     const auto results = calls_.run(static_cast<std::uint32_t>(in.imm), arguments);
     if (!results) return out.push_back(std::move(in));
-    for (std::size_t i = 0; i < in.results.size(); ++i) add_constant(in.results[i], (*results)[i], in.span, out);
+    for (std::size_t i = 0; i < in.results.size(); ++i)
+      add_constant(in.results[i], (*results)[i], in.span, out);
   }
 
   // Defines `value` as a constant.
   void add_constant(Value value, Bits bits, const Span& span, std::vector<Instruction>& out) {
     const ir::Type type = function_.values[value].type;
-    const Op op = type == ir::Type::f32 ? Op::const_f32 : type == ir::Type::i32 ? Op::const_i32 : Op::const_bool;
+    const Op op = type == ir::Type::f32   ? Op::const_f32
+                  : type == ir::Type::i32 ? Op::const_i32
+                                          : Op::const_bool;
     if (type == ir::Type::f32) bits = ir::canonical(bits);
-    Instruction in{.op = op, .results = {value}, .imm = static_cast<std::int32_t>(bits), .span = span};
+    Instruction in{
+        .op = op, .results = {value}, .imm = static_cast<std::int32_t>(bits), .span = span};
     folder_.note(in);
     out.push_back(std::move(in));
   }
@@ -90,7 +106,8 @@ class FoldWalk {
       Region& side = in.regions[*known ? 0 : 1];
       walk(side, out);
       renaming_.apply(side.yields);
-      for (std::size_t i = 0; i < in.results.size(); ++i) renaming_.set(in.results[i], side.yields[i]);
+      for (std::size_t i = 0; i < in.results.size(); ++i)
+        renaming_.set(in.results[i], side.yields[i]);
       return;
     }
     assume(condition, true, in.regions[0]);

@@ -1,5 +1,6 @@
-// Rules for floats. Each is exact under IEEE for every operand, signed zeros and infinities included; a NaN's sign and
-// payload cannot be observed. So: never x*0, x-x, and x+0 only where x is known not to be -0.
+// Rules for floats. Each is exact under IEEE for every operand, signed zeros and infinities
+// included; a NaN's sign and payload cannot be observed. So: never x*0, x-x, and x+0 only where x
+// is known not to be -0.
 #include <bit>
 
 #include "passes/folder.h"
@@ -36,7 +37,8 @@ Folded Folder::simplify_float(Instruction& in, std::vector<Instruction>& out) {
     case Op::fmul:
       if (is_constant_f32(b, 1.0f)) return replace(a);
       if (is_constant_f32(b, -1.0f)) return become(in, Op::fneg, {a});
-      if (comes_from(a, Op::fneg) && comes_from(b, Op::fneg)) return become(in, Op::fmul, {inner(a), inner(b)});
+      if (comes_from(a, Op::fneg) && comes_from(b, Op::fneg))
+        return become(in, Op::fmul, {inner(a), inner(b)});
       return keep();
     case Op::fneg:
       if (comes_from(a, Op::fneg)) return replace(inner(a));
@@ -50,13 +52,15 @@ Folded Folder::simplify_float(Instruction& in, std::vector<Instruction>& out) {
     case Op::fmax:
       if (a == b) return replace(a);
       return keep();
-    default: return keep();
+    default:
+      return keep();
   }
 }
 
 Folded Folder::simplify_division(Instruction& in, std::vector<Instruction>& out) {
   const Value a = in.operands[0], b = in.operands[1];
-  if (comes_from(a, Op::fneg) && comes_from(b, Op::fneg)) return become(in, Op::fdiv, {inner(a), inner(b)});
+  if (comes_from(a, Op::fneg) && comes_from(b, Op::fneg))
+    return become(in, Op::fdiv, {inner(a), inner(b)});
   const auto divisor = constant(b);
   if (!divisor) return keep();
   if (*divisor == ir::to_bits(1.0f)) return replace(a);
@@ -78,14 +82,16 @@ Folded Folder::simplify_fma(Instruction& in) {
   if (is_constant_f32(c, -0.0f)) return become(in, Op::fmul, {a, b});
   if (is_constant_f32(b, 1.0f)) return become(in, Op::fadd, {a, c});
   if (is_constant_f32(b, -1.0f)) return become(in, Op::fsub, {c, a});
-  if (comes_from(a, Op::fneg) && comes_from(b, Op::fneg)) return become(in, Op::fma, {inner(a), inner(b), c});
+  if (comes_from(a, Op::fneg) && comes_from(b, Op::fneg))
+    return become(in, Op::fma, {inner(a), inner(b), c});
   return keep();
 }
 
 Folded Folder::simplify_rounding(Instruction& in) {
   const Value a = in.operands[0];
   const Op from = known(a).op;
-  const bool is_whole = from == Op::ffloor || from == Op::fceil || from == Op::ftrunc || from == Op::fround;
+  const bool is_whole =
+      from == Op::ffloor || from == Op::fceil || from == Op::ftrunc || from == Op::fround;
   // An integer as a float is whole, and never -0.
   if (is_whole || from == Op::i2f) return replace(a);
   return keep();

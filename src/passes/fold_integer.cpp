@@ -46,7 +46,8 @@ Folded Folder::simplify_integer(Instruction& in, std::vector<Instruction>& out) 
       if (a == b) return become_constant(in, 0);
       if (is_constant_i32(b, 0)) return replace(a);
       return gather_constants(in, out);
-    default: return keep();
+    default:
+      return keep();
   }
 }
 
@@ -75,11 +76,15 @@ Folded Folder::simplify_comparison(Instruction& in) {
   switch (in.op) {
     case Op::flt:  // also false for NaN
     case Op::ine:
-    case Op::ilt: return become_constant(in, 0);
+    case Op::ilt:
+      return become_constant(in, 0);
     case Op::ieq:
-    case Op::ile: return become_constant(in, 1);
-    case Op::fle: return become(in, Op::feq, in.operands);
-    default: return keep();  // feq and fne of a value with itself ask for NaN
+    case Op::ile:
+      return become_constant(in, 1);
+    case Op::fle:
+      return become(in, Op::feq, in.operands);
+    default:
+      return keep();  // feq and fne of a value with itself ask for NaN
   }
 }
 
@@ -89,14 +94,22 @@ Folded Folder::simplify_boolean(Instruction& in) {
     const Known& from = known(a);
     const auto operands = [&] { return std::vector<Value>{from.operands[0], from.operands[1]}; };
     switch (from.op) {
-      case Op::bnot: return replace(from.operands[0]);
-      case Op::feq: return become(in, Op::fne, operands());
-      case Op::fne: return become(in, Op::feq, operands());
-      case Op::ieq: return become(in, Op::ine, operands());
-      case Op::ine: return become(in, Op::ieq, operands());
-      case Op::ilt: return become(in, Op::ile, {from.operands[1], from.operands[0]});
-      case Op::ile: return become(in, Op::ilt, {from.operands[1], from.operands[0]});
-      default: return keep();  // flt and fle have no opposite: both are false for NaN
+      case Op::bnot:
+        return replace(from.operands[0]);
+      case Op::feq:
+        return become(in, Op::fne, operands());
+      case Op::fne:
+        return become(in, Op::feq, operands());
+      case Op::ieq:
+        return become(in, Op::ine, operands());
+      case Op::ine:
+        return become(in, Op::ieq, operands());
+      case Op::ilt:
+        return become(in, Op::ile, {from.operands[1], from.operands[0]});
+      case Op::ile:
+        return become(in, Op::ilt, {from.operands[1], from.operands[0]});
+      default:
+        return keep();  // flt and fle have no opposite: both are false for NaN
     }
   }
   const Value b = in.operands[1];

@@ -1,5 +1,5 @@
-// The state of one function's folding: what is known of each value, and the rules. fold.cpp walks, the fold_*.cpp hold
-// the rules by kind of operator.
+// The state of one function's folding: what is known of each value, and the rules. fold.cpp walks,
+// the fold_*.cpp hold the rules by kind of operator.
 #pragma once
 
 #include <array>
@@ -32,7 +32,8 @@ class Folder {
   Folder(ir::Module& module, ir::Function& function)
       : module_(module), function_(function), known_(function.values.size()) {}
 
-  // Applies the rules to an instruction without regions whose operands are final. New constants go to `out`.
+  // Applies the rules to an instruction without regions whose operands are final. New constants go
+  // to `out`.
   Folded simplify(ir::Instruction& in, std::vector<ir::Instruction>& out);
   // Notes a kept instruction for the rules to come.
   void note(const ir::Instruction& in);
@@ -62,9 +63,12 @@ class Folder {
   static Folded replace(ir::Value value) { return {value}; }
   Folded become_constant(ir::Instruction& in, ir::Bits bits) const;
   Folded become(ir::Instruction& in, ir::Op op, std::vector<ir::Value> operands);
-  ir::Value add_constant(std::vector<ir::Instruction>& out, ir::Type type, ir::Bits bits, const Span& span);
+  ir::Value add_constant(std::vector<ir::Instruction>& out, ir::Type type, ir::Bits bits,
+                         const Span& span);
   bool comes_from(ir::Value value, ir::Op op) const { return known(value).op == op; }
-  ir::Value inner(ir::Value value, std::size_t operand = 0) const { return known(value).operands[operand]; }
+  ir::Value inner(ir::Value value, std::size_t operand = 0) const {
+    return known(value).operands[operand];
+  }
 
   std::optional<ir::Bits> evaluate_constant(const ir::Instruction& in) const;
   Folded simplify_float(ir::Instruction& in, std::vector<ir::Instruction>& out);

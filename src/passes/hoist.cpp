@@ -1,5 +1,6 @@
-// Loop-invariant code: cheap pure instructions move in front of the outermost loop that they do not depend on, also out
-// of ifs on the way, since nothing traps. Calls, ifs and loops stay: they may be dear, and may never have run.
+// Loop-invariant code: cheap pure instructions move in front of the outermost loop that they do not
+// depend on, also out of ifs on the way, since nothing traps. Calls, ifs and loops stay: they may
+// be dear, and may never have run.
 #include <utility>
 
 #include "passes/hoister.h"

@@ -1,5 +1,5 @@
-// Work of rate frame that stands under control of rate sample moves out to where the frame function can do it. It may
-// then run where it would not have run; so only what ends and is pure moves.
+// Work of rate frame that stands under control of rate sample moves out to where the frame function
+// can do it. It may then run where it would not have run; so only what ends and is pure moves.
 #include <utility>
 #include <vector>
 
@@ -19,7 +19,8 @@ bool has_loop(const ir::Module& module, const Region& region, std::vector<std::i
     if (in.op == Op::loop) return true;
     if (in.op == Op::call) {
       std::int8_t& callee = known[static_cast<std::size_t>(in.imm)];
-      if (callee < 0) callee = has_loop(module, module.functions[static_cast<std::size_t>(in.imm)].body, known);
+      if (callee < 0)
+        callee = has_loop(module, module.functions[static_cast<std::size_t>(in.imm)].body, known);
       if (callee != 0) return true;
     }
     for (const Region& inner : in.regions) {
@@ -47,7 +48,8 @@ void hoist_frame(ir::Module& module) {
   };
   const auto choose = [&](const HoistPlace& place) {
     const std::size_t here = place.path.size() - 1;
-    // Where the operands are must be a place of rate frame, outside of loops: only then the frame gives one value.
+    // Where the operands are must be a place of rate frame, outside of loops: only then the frame
+    // gives one value.
     for (std::size_t depth = 1; depth <= place.operand_depth; ++depth) {
       if (place.path[depth].is_loop || of_sample(place.path[depth])) return here;
     }

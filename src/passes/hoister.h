@@ -1,4 +1,5 @@
-// Moves instructions to regions further out, in one walk: the engine of hoist.cpp and hoist_frame.cpp.
+// Moves instructions to regions further out, in one walk: the engine of hoist.cpp and
+// hoist_frame.cpp.
 #pragma once
 
 #include <functional>
@@ -11,7 +12,7 @@ namespace pse::passes {
 
 // One region on the way from the function's body (depth 0) to an instruction.
 struct HoistRegion {
-  bool is_loop = false;       // head or body of a loop
+  bool is_loop = false;                // head or body of a loop
   ir::Value condition = ir::no_value;  // of the if, or that the loop's head yields
 };
 
@@ -46,7 +47,8 @@ class Hoister {
     regions_.push_back(&region);
     for (ir::Instruction& in : body) {
       for (std::size_t i = 0; i < in.regions.size(); ++i) walk_inner(in, in.regions[i]);
-      const std::size_t to = here > 0 && (*may_move_)(in) ? choose_({path_, operand_depth(in)}) : here;
+      const std::size_t to =
+          here > 0 && (*may_move_)(in) ? choose_({path_, operand_depth(in)}) : here;
       for (const ir::Value result : in.results) depth_[result] = to;
       regions_[to]->body.push_back(std::move(in));
     }
@@ -60,7 +62,8 @@ class Hoister {
     path_.pop_back();
   }
 
-  // Of an instruction with regions, what its regions use counts too; such are moved only by hoist_frame, which asks.
+  // Of an instruction with regions, what its regions use counts too; such are moved only by
+  // hoist_frame, which asks.
   std::size_t operand_depth(const ir::Instruction& in) const {
     std::size_t deepest = 0;
     for (const ir::Value operand : in.operands) deepest = std::max(deepest, depth_[operand]);

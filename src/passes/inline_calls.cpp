@@ -1,5 +1,5 @@
-// Inlining: small functions always, larger ones where there is only one call. The others stay calls, so that compile
-// time is bounded.
+// Inlining: small functions always, larger ones where there is only one call. The others stay
+// calls, so that compile time is bounded.
 #include <utility>
 
 #include "ir/count.h"
@@ -18,7 +18,10 @@ using ir::Value;
 class Inliner {
  public:
   Inliner(ir::Module& module, const InlineOptions& options)
-      : module_(module), options_(options), sizes_(module.functions.size()), sites_(module.functions.size(), 0),
+      : module_(module),
+        options_(options),
+        sizes_(module.functions.size()),
+        sites_(module.functions.size(), 0),
         done_(module.functions.size(), false) {}
 
   void run() {
@@ -58,7 +61,8 @@ class Inliner {
 
   bool is_wanted(std::size_t callee) const {
     if (total_ + sizes_[callee] > options_.max_total) return false;
-    return sizes_[callee] <= options_.small || (sites_[callee] == 1 && sizes_[callee] <= options_.single);
+    return sizes_[callee] <= options_.small ||
+           (sites_[callee] == 1 && sizes_[callee] <= options_.single);
   }
 
   void inline_in(Function& function, Region& region, Renaming& renaming) {
@@ -88,7 +92,8 @@ class Inliner {
       function.values.push_back(callee.values[value]);
       fresh.set(value, first + value);
     }
-    for (std::size_t i = 0; i < call.operands.size(); ++i) fresh.set(callee.body.params[i], call.operands[i]);
+    for (std::size_t i = 0; i < call.operands.size(); ++i)
+      fresh.set(callee.body.params[i], call.operands[i]);
     for (const Instruction& in : callee.body.body) {
       out.push_back(in);
       rename_all(out.back(), fresh);
@@ -118,6 +123,8 @@ class Inliner {
 
 }  // namespace
 
-void inline_calls(ir::Module& module, const InlineOptions& options) { Inliner(module, options).run(); }
+void inline_calls(ir::Module& module, const InlineOptions& options) {
+  Inliner(module, options).run();
+}
 
 }  // namespace pse::passes

@@ -1,4 +1,5 @@
-// The passes, one per file. Each keeps a module's meaning bit for bit and takes time near linear in its size.
+// The passes, one per file. Each keeps a module's meaning bit for bit and takes time near linear in
+// its size.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +12,9 @@ namespace pse::passes {
 
 // inline_calls.cpp: copies called functions into their callers.
 struct InlineOptions {
-  std::size_t small = 40;            // functions up to this many instructions, always
-  std::size_t single = 1u << 20;     // functions with one call site, up to this many
-  std::size_t max_total = 600'000;   // no more once the module has this many
+  std::size_t small = 40;           // functions up to this many instructions, always
+  std::size_t single = 1u << 20;    // functions with one call site, up to this many
+  std::size_t max_total = 600'000;  // no more once the module has this many
 };
 void inline_calls(ir::Module& module, const InlineOptions& options = {});
 
@@ -46,18 +47,20 @@ void hoist(ir::Module& module);
 
 // remove_dead.cpp: instructions, loop parameters, arrays and functions that nothing observes.
 struct DeadOptions {
-  bool arrays = true;     // off: arrays keep their numbers
-  bool functions = true;  // likewise functions
+  bool arrays = true;          // off: arrays keep their numbers
+  bool functions = true;       // likewise functions
   std::vector<bool> observed;  // arrays whose elements are read when the function is over
 };
 void remove_dead(ir::Module& module, const DeadOptions& options = {});
 
-// rates.cpp: gives every value and array of a function its rate. Arrays marked in `of_sample` are of rate sample, and
-// all that are written under control or with values of rate sample become so and are marked.
+// rates.cpp: gives every value and array of a function its rate. Arrays marked in `of_sample` are
+// of rate sample, and all that are written under control or with values of rate sample become so
+// and are marked.
 void assign_rates(const ir::Module& module, ir::Function& function, std::vector<bool>& of_sample);
 void assign_rates(ir::Module& module);
 
-// hoist_frame.cpp: cheap work of rate frame leaves the ifs and loops of rate sample around it. Needs rates.
+// hoist_frame.cpp: cheap work of rate frame leaves the ifs and loops of rate sample around it.
+// Needs rates.
 void hoist_frame(ir::Module& module);
 
 // compact_values.cpp: values numbered in the order of their definition, without gaps.

@@ -18,23 +18,29 @@ SplitModule run_pipeline(ir::Module module, const PipelineOptions& options) {
 
   if (options.optimize) {
     // What the program does not need, and what it calls.
-    run("remove-dead", [](ir::Module& m) { remove_dead(m); }, module);
-    run("inline", [](ir::Module& m) { inline_calls(m); }, module);
+    run(
+        "remove-dead", [](ir::Module& m) { remove_dead(m); }, module);
+    run(
+        "inline", [](ir::Module& m) { inline_calls(m); }, module);
     // Twice: selects made from ifs, and loops that fell away, show new constants.
     for (int round = 0; round < 2; ++round) {
       run("fold", fold, module);
       run("share", share, module);
       run("simplify-loops", simplify_loops, module);
-      run("unroll", [](ir::Module& m) { unroll(m); }, module);
+      run(
+          "unroll", [](ir::Module& m) { unroll(m); }, module);
       run("decide", decide, module);
-      run("convert-ifs", [](ir::Module& m) { convert_ifs(m); }, module);
+      run(
+          "convert-ifs", [](ir::Module& m) { convert_ifs(m); }, module);
     }
     run("fold", fold, module);
     run("hoist", hoist, module);
     run("share", share, module);
-    run("remove-dead", [](ir::Module& m) { remove_dead(m); }, module);
+    run(
+        "remove-dead", [](ir::Module& m) { remove_dead(m); }, module);
     // Whose work it is: the frame's or the sample's.
-    run("rates", [](ir::Module& m) { assign_rates(m); }, module);
+    run(
+        "rates", [](ir::Module& m) { assign_rates(m); }, module);
     run("hoist-frame", hoist_frame, module);
   }
   SplitModule result = split(std::move(module));

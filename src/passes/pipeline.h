@@ -9,12 +9,13 @@
 
 namespace pse::passes {
 
-// A module cut by rate. functions[frame] runs once per frame: it has no parameters, reads only frame-rate inputs, may
-// write arrays of rate frame, and yields one f32 per frame slot. functions[module.entry] runs per sample and reads slot
-// k as `input (first_slot + k)`: module.inputs ends with one frame-rate Input "$slot.k" per slot. i32 travels by
-// bits2f/f2bits, boolean as 1 or 0; so a slot keeps its bits as they are, also where they look like a NaN's. Both
-// functions' `arrays` lists are the same, index for index; arrays of rate frame are written only by the frame function,
-// arrays of rate sample are touched only by the sample function.
+// A module cut by rate. functions[frame] runs once per frame: it has no parameters, reads only
+// frame-rate inputs, may write arrays of rate frame, and yields one f32 per frame slot.
+// functions[module.entry] runs per sample and reads slot k as `input (first_slot + k)`:
+// module.inputs ends with one frame-rate Input "$slot.k" per slot. i32 travels by bits2f/f2bits,
+// boolean as 1 or 0; so a slot keeps its bits as they are, also where they look like a NaN's. Both
+// functions' `arrays` lists are the same, index for index; arrays of rate frame are written only by
+// the frame function, arrays of rate sample are touched only by the sample function.
 struct SplitModule {
   ir::Module module;
   std::uint32_t frame = 0;       // function index

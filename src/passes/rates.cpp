@@ -1,5 +1,6 @@
-// Rates: how often each value changes (1985: `if begin_frame` is the frame rate made visible). The lowest rates that
-// are consistent are found by raising them until nothing changes; each value rises at most twice.
+// Rates: how often each value changes (1985: `if begin_frame` is the frame rate made visible). The
+// lowest rates that are consistent are found by raising them until nothing changes; each value
+// rises at most twice.
 //
 // Within a loop the rate of a value says that it is the same for all samples in the same turn.
 #include <algorithm>
@@ -24,8 +25,12 @@ class RateAssigner {
  public:
   RateAssigner(const ir::Module& module, Function& function, std::vector<bool>& of_sample,
                const std::vector<bool>& asks_external)
-      : module_(module), function_(function), of_sample_(of_sample), asks_external_(asks_external),
-        users_(function.values.size() + 1, 0), readers_(function.arrays.size()) {
+      : module_(module),
+        function_(function),
+        of_sample_(of_sample),
+        asks_external_(asks_external),
+        users_(function.values.size() + 1, 0),
+        readers_(function.arrays.size()) {
     of_sample_.resize(function.arrays.size(), false);
   }
 
@@ -52,8 +57,9 @@ class RateAssigner {
   struct Place {
     const Instruction* in;
     std::uint32_t parent;
-    bool of_sample = false;                // ifs and loops: their regions run differently from sample to sample
-    std::vector<std::uint32_t> inner;      // ifs and loops: those within that must know, and writes of arrays
+    bool of_sample = false;  // ifs and loops: their regions run differently from sample to sample
+    std::vector<std::uint32_t>
+        inner;  // ifs and loops: those within that must know, and writes of arrays
   };
 
   void collect(const Region& region, std::uint32_t parent) {
@@ -79,7 +85,8 @@ class RateAssigner {
 
   // users_of_ holds the users of value v from users_[v] to users_[v + 1].
   void index_users() {
-    for (const Place& place : instructions_) for_each_use(*place.in, [&](Value value) { ++users_[value + 1]; });
+    for (const Place& place : instructions_)
+      for_each_use(*place.in, [&](Value value) { ++users_[value + 1]; });
     for (std::size_t i = 1; i < users_.size(); ++i) users_[i] += users_[i - 1];
     users_of_.resize(users_.back());
     std::vector<std::uint32_t> next(users_.begin(), users_.end() - 1);
@@ -134,7 +141,8 @@ class RateAssigner {
     const Rate condition = rate(in.operands[0]);
     spread_control(index, condition);
     for (std::size_t i = 0; i < in.results.size(); ++i) {
-      raise(in.results[i], std::max({condition, rate(in.regions[0].yields[i]), rate(in.regions[1].yields[i])}));
+      raise(in.results[i],
+            std::max({condition, rate(in.regions[0].yields[i]), rate(in.regions[1].yields[i])}));
     }
   }
 
@@ -176,16 +184,21 @@ class RateAssigner {
 
 bool asks_external(const ir::Module& module, const Region& region, std::vector<std::int8_t>& known);
 
-bool asks_external(const ir::Module& module, std::size_t function, std::vector<std::int8_t>& known) {
-  if (known[function] < 0) known[function] = asks_external(module, module.functions[function].body, known);
+bool asks_external(const ir::Module& module, std::size_t function,
+                   std::vector<std::int8_t>& known) {
+  if (known[function] < 0)
+    known[function] = asks_external(module, module.functions[function].body, known);
   return known[function] != 0;
 }
 
-bool asks_external(const ir::Module& module, const Region& region, std::vector<std::int8_t>& known) {
+bool asks_external(const ir::Module& module, const Region& region,
+                   std::vector<std::int8_t>& known) {
   return std::ranges::any_of(region.body, [&](const Instruction& in) {
     if (in.op == Op::external) return true;
-    if (in.op == Op::call && asks_external(module, static_cast<std::size_t>(in.imm), known)) return true;
-    return std::ranges::any_of(in.regions, [&](const Region& inner) { return asks_external(module, inner, known); });
+    if (in.op == Op::call && asks_external(module, static_cast<std::size_t>(in.imm), known))
+      return true;
+    return std::ranges::any_of(
+        in.regions, [&](const Region& inner) { return asks_external(module, inner, known); });
   });
 }
 

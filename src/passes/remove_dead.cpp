@@ -1,5 +1,5 @@
-// Dead code: marks what outputs and effects need, then drops the rest. Loop parameters are marked one by one, so a
-// counter that feeds only itself goes too.
+// Dead code: marks what outputs and effects need, then drops the rest. Loop parameters are marked
+// one by one, so a counter that feeds only itself goes too.
 #include <algorithm>
 #include <utility>
 
@@ -48,7 +48,8 @@ class DeadCode {
   // Where a value comes from: an instruction's result, or the k-th thing that a loop carries.
   struct Definition {
     const Instruction* in = nullptr;
-    std::uint32_t container = nowhere;  // index into containers_, for results of ifs and loops and loops' parameters
+    std::uint32_t container =
+        nowhere;  // index into containers_, for results of ifs and loops and loops' parameters
     std::uint32_t index = 0;
   };
   struct Container {
@@ -63,7 +64,8 @@ class DeadCode {
       if (has_regions(in.op)) {
         container = static_cast<std::uint32_t>(containers_.size());
         containers_.push_back({&in, parent});
-        if (in.op == Op::loop) define(in.regions[0].params, in, container), define(in.regions[1].params, in, container);
+        if (in.op == Op::loop)
+          define(in.regions[0].params, in, container), define(in.regions[1].params, in, container);
         for (const Region& inner : in.regions) find_definitions(inner, container);
       }
       define(in.results, in, container);
@@ -124,7 +126,8 @@ class DeadCode {
         mark_container(definition.container);
       } else {
         for (const Value operand : in.operands) mark(operand);
-        if (reads_array(in.op)) mark_array(static_cast<std::size_t>(in.imm), in.op == Op::array_load);
+        if (reads_array(in.op))
+          mark_array(static_cast<std::size_t>(in.imm), in.op == Op::array_load);
       }
     }
   }
@@ -222,7 +225,8 @@ void remove_arrays(Function& function, const DeadCode& dead) {
   }
   function.arrays = std::move(kept);
   for_each_instruction(function.body, [&](Instruction& in) {
-    if (reads_array(in.op) || writes_array(in.op)) in.imm = number[static_cast<std::size_t>(in.imm)];
+    if (reads_array(in.op) || writes_array(in.op))
+      in.imm = number[static_cast<std::size_t>(in.imm)];
   });
 }
 

@@ -29,7 +29,8 @@ class Renaming {
   std::vector<ir::Value> to_;
 };
 
-// Copies instructions with fresh values for what they define. What they use and was not defined by them or set stays.
+// Copies instructions with fresh values for what they define. What they use and was not defined by
+// them or set stays.
 class Cloner {
  public:
   explicit Cloner(ir::Function& function) : function_(function) {}
@@ -41,7 +42,10 @@ class Cloner {
   }
 
   ir::Instruction clone(const ir::Instruction& in) {
-    ir::Instruction made{.op = in.op, .operands = used(in.operands), .imm = in.imm, .component = in.component,
+    ir::Instruction made{.op = in.op,
+                         .operands = used(in.operands),
+                         .imm = in.imm,
+                         .component = in.component,
                          .span = in.span};
     for (const ir::Region& region : in.regions) {
       ir::Region inner{.params = defined(region.params)};
@@ -77,8 +81,12 @@ inline bool is_constant(ir::Op op) {
   return op == ir::Op::const_f32 || op == ir::Op::const_i32 || op == ir::Op::const_bool;
 }
 inline bool is_call(ir::Op op) { return op == ir::Op::call || op == ir::Op::external; }
-inline bool reads_array(ir::Op op) { return op == ir::Op::array_load || op == ir::Op::array_length; }
-inline bool writes_array(ir::Op op) { return op == ir::Op::array_store || op == ir::Op::array_resize; }
+inline bool reads_array(ir::Op op) {
+  return op == ir::Op::array_load || op == ir::Op::array_length;
+}
+inline bool writes_array(ir::Op op) {
+  return op == ir::Op::array_store || op == ir::Op::array_resize;
+}
 inline bool has_regions(ir::Op op) { return op == ir::Op::if_ || op == ir::Op::loop; }
 // May be computed where its result is not needed, at little cost: nothing traps.
 inline bool is_cheap_and_pure(ir::Op op) { return ir::info(op).pure && !is_call(op); }
@@ -89,16 +97,20 @@ inline int cost_of(ir::Op op) {
     case ir::Op::const_f32:
     case ir::Op::const_i32:
     case ir::Op::const_bool:
-    case ir::Op::input: return 0;
+    case ir::Op::input:
+      return 0;
     case ir::Op::fdiv:
     case ir::Op::fsqrt:
     case ir::Op::array_load:
     case ir::Op::table_f32:
     case ir::Op::table_i32:
-    case ir::Op::bytes_lookup: return 4;
+    case ir::Op::bytes_lookup:
+      return 4;
     case ir::Op::call:
-    case ir::Op::external: return 1000;
-    default: return 1;
+    case ir::Op::external:
+      return 1000;
+    default:
+      return 1;
   }
 }
 

@@ -1,5 +1,5 @@
-// Common subexpressions: an instruction that computes what one that dominates it has computed is replaced by it.
-// Loads are shared too as long as no write can lie between.
+// Common subexpressions: an instruction that computes what one that dominates it has computed is
+// replaced by it. Loads are shared too as long as no write can lie between.
 #include <unordered_map>
 #include <utility>
 
@@ -27,7 +27,8 @@ struct Key {
 
 struct KeyHash {
   std::size_t operator()(const Key& key) const {
-    std::uint64_t hash = static_cast<std::uint64_t>(key.op) << 32 ^ static_cast<std::uint32_t>(key.imm);
+    std::uint64_t hash =
+        static_cast<std::uint64_t>(key.op) << 32 ^ static_cast<std::uint32_t>(key.imm);
     const auto mix = [&](std::uint64_t part) {
       hash = (hash ^ part) * 0x9e3779b97f4a7c15u;
       hash ^= hash >> 29;
@@ -56,15 +57,19 @@ bool commutes(Op op) {
     case Op::band:
     case Op::bor:
     case Op::bxor:
-    case Op::bytes_add: return true;
-    default: return false;
+    case Op::bytes_add:
+      return true;
+    default:
+      return false;
   }
 }
 
 class Sharing {
  public:
   explicit Sharing(Function& function)
-      : function_(function), renaming_(function.values.size()), array_state_(function.arrays.size(), 0) {}
+      : function_(function),
+        renaming_(function.values.size()),
+        array_state_(function.arrays.size(), 0) {}
 
   void run() { walk(function_.body); }
 
@@ -95,7 +100,8 @@ class Sharing {
     }
   }
 
-  // Regions that write make the memory before and after them differ; a loop's also that of its turns.
+  // Regions that write make the memory before and after them differ; a loop's also that of its
+  // turns.
   void walk_regions(Instruction& in) {
     for (Region& inner : in.regions) {
       if (in.op == Op::loop) memory_ = ++state_;
@@ -108,21 +114,24 @@ class Sharing {
 
   bool is_shared(const Instruction& in) {
     Key key{in.op, in.imm, in.component, 0, in.operands};
-    if (commutes(in.op) && key.operands[0] > key.operands[1]) std::swap(key.operands[0], key.operands[1]);
-    if (reads_array(in.op)) key.memory = std::max(memory_, array_state_[static_cast<std::size_t>(in.imm)]);
+    if (commutes(in.op) && key.operands[0] > key.operands[1])
+      std::swap(key.operands[0], key.operands[1]);
+    if (reads_array(in.op))
+      key.memory = std::max(memory_, array_state_[static_cast<std::size_t>(in.imm)]);
     const auto [place, is_new] = table_.try_emplace(std::move(key), in.results);
     if (is_new) {
       entered_.push_back(&place->first);
       return false;
     }
-    for (std::size_t i = 0; i < in.results.size(); ++i) renaming_.set(in.results[i], place->second[i]);
+    for (std::size_t i = 0; i < in.results.size(); ++i)
+      renaming_.set(in.results[i], place->second[i]);
     return true;
   }
 
   Function& function_;
   Renaming renaming_;
   Table table_;
-  std::vector<const Key*> entered_;  // in order, to leave regions by
+  std::vector<const Key*> entered_;         // in order, to leave regions by
   std::vector<std::uint64_t> array_state_;  // the number of the last write to each array
   std::uint64_t memory_ = 0;  // the number of the last write that may have been to any array
   std::uint64_t state_ = 0;

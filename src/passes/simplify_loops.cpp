@@ -32,7 +32,8 @@ class LoopSimplifier {
       if (is_constant(in.op)) constants_[in.result()] = static_cast<Bits>(in.imm);
       if (in.op == Op::loop) {
         if (never_turns(in)) {
-          for (std::size_t i = 0; i < in.results.size(); ++i) renaming_.set(in.results[i], in.operands[i]);
+          for (std::size_t i = 0; i < in.results.size(); ++i)
+            renaming_.set(in.results[i], in.operands[i]);
           continue;
         }
         keep_unchanged_outside(in);
@@ -105,7 +106,8 @@ class LoopSimplifier {
       body.yields[next] = body.yields[i];
       ++next;
     }
-    for (auto* values : {&loop.operands, &loop.results, &head.params, &body.params, &body.yields}) values->resize(next);
+    for (auto* values : {&loop.operands, &loop.results, &head.params, &body.params, &body.yields})
+      values->resize(next);
   }
 
   const ir::Module& module_;

@@ -1,9 +1,9 @@
-// Cuts the program by rate (pipeline.h): the frame function does what is the same for all samples of a frame, the
-// program reads its results as inputs.
+// Cuts the program by rate (pipeline.h): the frame function does what is the same for all samples
+// of a frame, the program reads its results as inputs.
 //
-// Both are copies of the program from which the other's part is left out, so a loop or an if with work of both rates
-// stands in both. A value goes through a slot if the frame function has exactly one of it: it is of rate frame, runs
-// under control of rate frame, and is not in a loop.
+// Both are copies of the program from which the other's part is left out, so a loop or an if with
+// work of both rates stands in both. A value goes through a slot if the frame function has exactly
+// one of it: it is of rate frame, runs under control of rate frame, and is not in a loop.
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -24,8 +24,8 @@ using ir::Value;
 
 constexpr int max_rounds = 6;
 
-// Numbers instructions in program order, and tells which arrays of rate frame the sample reads before the frame has
-// written them for the last time.
+// Numbers instructions in program order, and tells which arrays of rate frame the sample reads
+// before the frame has written them for the last time.
 class ReadsTooEarly {
  public:
   explicit ReadsTooEarly(const Function& program)
@@ -60,11 +60,13 @@ class ReadsTooEarly {
     }
   }
 
-  void find(const Function& sample, const Region& region, std::vector<bool>& of_sample, bool& found) const {
+  void find(const Function& sample, const Region& region, std::vector<bool>& of_sample,
+            bool& found) const {
     for (const Instruction& in : region.body) {
       for (const Region& inner : in.regions) find(sample, inner, of_sample, found);
       const auto array = static_cast<std::size_t>(in.imm);
-      if (!reads_array(in.op) || of_sample[array] || position_[in.result()] > last_write_[array]) continue;
+      if (!reads_array(in.op) || of_sample[array] || position_[in.result()] > last_write_[array])
+        continue;
       of_sample[array] = true;
       found = true;
     }
@@ -139,7 +141,8 @@ SplitModule split(ir::Module module) {
   const std::size_t first_slot = module.inputs.size();
   Function& program = module.main();
 
-  // Arrays start as the frame's and become the sample's until each is read only behind its last write.
+  // Arrays start as the frame's and become the sample's until each is read only behind its last
+  // write.
   std::vector<bool> of_sample(program.arrays.size(), false);
   const ReadsTooEarly too_early(program);
   SampleFunction sample;

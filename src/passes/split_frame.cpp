@@ -17,7 +17,8 @@ using ir::Value;
 
 class FrameCut {
  public:
-  FrameCut(const Function& program, const std::vector<Value>& slots) : slot_of_(program.values.size(), no_slot) {
+  FrameCut(const Function& program, const std::vector<Value>& slots)
+      : slot_of_(program.values.size(), no_slot) {
     frame_.name = "frame";
     frame_.values = program.values;
     frame_.arrays = program.arrays;
@@ -65,12 +66,14 @@ class FrameCut {
   bool belongs(const Instruction& in) const {
     if (in.op == Op::check || in.op == Op::if_) return of_frame(in.operands[0]);
     if (in.op == Op::loop) return of_frame(in.regions[0].yields[0]);
-    if (writes_array(in.op)) return frame_.arrays[static_cast<std::size_t>(in.imm)].rate != Rate::sample;
+    if (writes_array(in.op))
+      return frame_.arrays[static_cast<std::size_t>(in.imm)].rate != Rate::sample;
     return !in.results.empty() && of_frame(in.results[0]);
   }
 
   // Where the k-th of `wanted` is of rate frame, keeps the k-th of `values`.
-  std::vector<Value> select(const std::vector<Value>& values, const std::vector<Value>& wanted) const {
+  std::vector<Value> select(const std::vector<Value>& values,
+                            const std::vector<Value>& wanted) const {
     std::vector<Value> kept;
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (of_frame(wanted[i])) kept.push_back(values[i]);
@@ -78,9 +81,13 @@ class FrameCut {
     return kept;
   }
 
-  // A slot's value computed in one side becomes a further result; the other side gives 0, which nobody reads.
+  // A slot's value computed in one side becomes a further result; the other side gives 0, which
+  // nobody reads.
   void copy_if(const Instruction& in, Region& out, std::vector<Export>& exports, bool in_loop) {
-    Instruction made{.op = in.op, .operands = in.operands, .results = select(in.results, in.results), .span = in.span};
+    Instruction made{.op = in.op,
+                     .operands = in.operands,
+                     .results = select(in.results, in.results),
+                     .span = in.span};
     made.regions.resize(2);
     std::vector<Export> found[2];
     for (std::size_t side = 0; side < 2; ++side) {
@@ -101,7 +108,9 @@ class FrameCut {
 
   void copy_loop(const Instruction& in, Region& out) {
     const std::vector<Value>& carried = in.regions[0].params;
-    Instruction made{.op = in.op, .operands = select(in.operands, carried), .results = select(in.results, carried),
+    Instruction made{.op = in.op,
+                     .operands = select(in.operands, carried),
+                     .results = select(in.results, carried),
                      .span = in.span};
     made.regions.resize(2);
     std::vector<Export> none;
@@ -115,7 +124,9 @@ class FrameCut {
   }
 
   Value emit_zero(Region& region, Type type, const Span& span) {
-    const Op op = type == Type::f32 ? Op::const_f32 : type == Type::i32 ? Op::const_i32 : Op::const_bool;
+    const Op op = type == Type::f32   ? Op::const_f32
+                  : type == Type::i32 ? Op::const_i32
+                                      : Op::const_bool;
     region.body.push_back({.op = op, .results = {frame_.add_value(type)}, .span = span});
     return region.body.back().result();
   }

@@ -8,7 +8,8 @@
 
 namespace pse::passes {
 
-// The program without the frame's work. Its value candidates[k], where it is still used, is `input (first_slot + k)`.
+// The program without the frame's work. Its value candidates[k], where it is still used, is `input
+// (first_slot + k)`.
 struct SampleFunction {
   ir::Function function;
   std::vector<ir::Value> candidates;

@@ -19,7 +19,9 @@ using ir::Value;
 class SampleCut {
  public:
   SampleCut(const Function& program, std::size_t first_slot)
-      : first_slot_(first_slot), renaming_(program.values.size()), at_hand_(program.values.size(), false) {
+      : first_slot_(first_slot),
+        renaming_(program.values.size()),
+        at_hand_(program.values.size(), false) {
     result_.function.name = program.name;
     result_.function.values = program.values;
     result_.function.arrays = program.arrays;
@@ -51,7 +53,8 @@ class SampleCut {
           if (of_frame(result)) add_slot(result, in.span);
         }
         // What is all in slots need not stay, unless the sample has a part in it.
-        const bool all = std::ranges::all_of(in.results, [&](Value value) { return of_frame(value); });
+        const bool all =
+            std::ranges::all_of(in.results, [&](Value value) { return of_frame(value); });
         if (all && !has_regions(in.op) && !in.results.empty()) continue;
       }
       out.push_back(copy(in, frame, in_loop));
@@ -60,7 +63,11 @@ class SampleCut {
   }
 
   Instruction copy(const Instruction& in, bool frame, bool in_loop) {
-    Instruction made{.op = in.op, .operands = in.operands, .imm = in.imm, .component = in.component, .span = in.span};
+    Instruction made{.op = in.op,
+                     .operands = in.operands,
+                     .imm = in.imm,
+                     .component = in.component,
+                     .span = in.span};
     renaming_.apply(made.operands);
     // A result that went to a slot has a new name there; the old one stays with the copy, unused.
     made.results = in.results;
@@ -86,13 +93,16 @@ class SampleCut {
   bool is_at_hand(const Instruction& in) const {
     if (is_constant(in.op) || in.op == Op::input) return true;
     const bool is_cheap = in.op == Op::fneg || in.op == Op::fabs || in.op == Op::bnot ||
-                          (in.op >= Op::feq && in.op <= Op::fle) || (in.op >= Op::ieq && in.op <= Op::ile);
-    return is_cheap && std::ranges::all_of(in.operands, [&](Value value) { return at_hand_[value]; });
+                          (in.op >= Op::feq && in.op <= Op::fle) ||
+                          (in.op >= Op::ieq && in.op <= Op::ile);
+    return is_cheap &&
+           std::ranges::all_of(in.operands, [&](Value value) { return at_hand_[value]; });
   }
 
   Value emit(Op op, std::vector<Value> operands, Type type, std::int32_t imm, const Span& span) {
     const Value value = result_.function.add_value(type);
-    reads_.push_back({.op = op, .operands = std::move(operands), .results = {value}, .imm = imm, .span = span});
+    reads_.push_back(
+        {.op = op, .operands = std::move(operands), .results = {value}, .imm = imm, .span = span});
     return value;
   }
 
@@ -101,8 +111,10 @@ class SampleCut {
     result_.candidates.push_back(value);
     const Value read = emit(Op::input, {}, Type::f32, slot, span);
     switch (result_.function.values[value].type) {
-      case Type::f32: return renaming_.set(value, read);
-      case Type::i32: return renaming_.set(value, emit(Op::f2bits, {read}, Type::i32, 0, span));
+      case Type::f32:
+        return renaming_.set(value, read);
+      case Type::i32:
+        return renaming_.set(value, emit(Op::f2bits, {read}, Type::i32, 0, span));
       case Type::boolean: {
         const Value zero = emit(Op::const_f32, {}, Type::f32, 0, span);
         return renaming_.set(value, emit(Op::fne, {read, zero}, Type::boolean, 0, span));

@@ -1,5 +1,6 @@
-// Short loops whose number of turns is known become straight code: what they count is then constant, and an octave's
-// division by a power of two a multiplication. Only where the result stays small, since compile time counts too.
+// Short loops whose number of turns is known become straight code: what they count is then
+// constant, and an octave's division by a power of two a multiplication. Only where the result
+// stays small, since compile time counts too.
 #include <optional>
 #include <utility>
 
@@ -19,7 +20,9 @@ using ir::Value;
 class Unroller {
  public:
   Unroller(Function& function, const UnrollOptions& options)
-      : function_(function), options_(options), renaming_(function.values.size()),
+      : function_(function),
+        options_(options),
+        renaming_(function.values.size()),
         definitions_(function.values.size()) {}
 
   void run() { walk(function_.body); }
@@ -40,7 +43,8 @@ class Unroller {
       for (Region& inner : in.regions) walk(inner);
       note(in);
       const auto turns = in.op == Op::loop ? count_turns(in) : std::nullopt;
-      if (turns && *turns * (1 + ir::count_instructions(in.regions[1])) <= options_.max_instructions) {
+      if (turns &&
+          *turns * (1 + ir::count_instructions(in.regions[1])) <= options_.max_instructions) {
         unroll(in, *turns, out);
       } else {
         out.push_back(std::move(in));
@@ -67,7 +71,8 @@ class Unroller {
     return {};
   }
 
-  // For a loop that counts from a constant by a constant to a constant, and whose head does nothing else.
+  // For a loop that counts from a constant by a constant to a constant, and whose head does nothing
+  // else.
   std::optional<std::size_t> count_turns(const Instruction& loop) const {
     const Region& head = loop.regions[0];
     for (const Instruction& in : head.body) {
@@ -81,7 +86,8 @@ class Unroller {
       const auto start = integer(loop.operands[i]);
       const Definition next = definition(loop.regions[1].yields[i]);
       const auto step = integer(next.operands[1]);
-      if (!start || !step || next.op != Op::iadd || next.operands[0] != loop.regions[1].params[i]) return {};
+      if (!start || !step || next.op != Op::iadd || next.operands[0] != loop.regions[1].params[i])
+        return {};
       const std::int64_t last = condition.op == Op::ilt ? *limit - 1 : *limit;
       if (*step <= 0 || last + *step > INT32_MAX) return {};
       return last < *start ? 0 : static_cast<std::size_t>((last - *start) / *step) + 1;

@@ -1,4 +1,5 @@
-// Each operator on operands whose answers were worked out by hand from IEEE 754 and the sentences of ops.cpp.
+// Each operator on operands whose answers were worked out by hand from IEEE 754 and the sentences
+// of ops.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,10 +60,10 @@ const std::vector<Case>& cases() {
       {Op::fmul, {0.0f, -2.0f}, -0.0f},
       {Op::fmul, {0.0f, inf}, nan},
       {Op::fmul, {largest, 2.0f}, inf},
-      {Op::fmul, {smallest, 0.5f}, 0.0f},   // halfway: to even
+      {Op::fmul, {smallest, 0.5f}, 0.0f},  // halfway: to even
       {Op::fmul, {smallest, 0.75f}, smallest},
       {Op::fmul, {16777215.0f, 16777215.0f}, 281474943156224.0f},  // 2^48 - 2^25 + 1
-      {Op::fdiv, {1.0f, 3.0f}, 11184811.0f / 33554432.0f},  // 0x3eaaaaab
+      {Op::fdiv, {1.0f, 3.0f}, 11184811.0f / 33554432.0f},         // 0x3eaaaaab
       {Op::fdiv, {1.0f, 0.0f}, inf},
       {Op::fdiv, {1.0f, -0.0f}, -inf},
       {Op::fdiv, {-1.0f, 0.0f}, -inf},
@@ -265,7 +266,8 @@ TEST(Operators, GiveTheAnswersWorkedOutByHand) {
     module.main().body.yields = {result};
     const auto index = &example - cases().data();
     const Any& answer = example.answer;
-    EXPECT_EQ(interpret(module, 0, {}).results[0], answer.type == Type::f32 ? canonical(answer.bits) : answer.bits)
+    EXPECT_EQ(interpret(module, 0, {}).results[0],
+              answer.type == Type::f32 ? canonical(answer.bits) : answer.bits)
         << info(example.op).name << ", case " << index;
   }
 }
@@ -281,7 +283,8 @@ TEST(Operators, AllThatComputeHaveCases) {
 
 // Runs what `write` emits, and gives the outcome and results.
 template <typename Write>
-Interpreted run(const Write& write, std::vector<Array> arrays = {}, std::uint64_t max_turns = 1000) {
+Interpreted run(const Write& write, std::vector<Array> arrays = {},
+                std::uint64_t max_turns = 1000) {
   Module module = module_with_tables();
   module.inputs = {{"x", Rate::sample}, {"time", Rate::frame}};
   module.checks = {{{}, "zeroth"}, {{}, "first"}};
@@ -290,7 +293,8 @@ Interpreted run(const Write& write, std::vector<Array> arrays = {}, std::uint64_
   Builder b(module, module.main());
   module.main().body.yields = write(b);
   const std::vector<float> inputs = {7.0f, 9.0f};
-  const ExternalCallback external = [](std::uint32_t, std::span<const float> a, std::span<float> r) {
+  const ExternalCallback external = [](std::uint32_t, std::span<const float> a,
+                                       std::span<float> r) {
     r[0] = a[0] + a[1];
     r[1] = a[0] * a[1];
   };
@@ -300,38 +304,45 @@ Interpreted run(const Write& write, std::vector<Array> arrays = {}, std::uint64_
 TEST(Interpreter, ReadsInputsAndCallsExternals) {
   const auto result = run([](Builder& b) {
     const Type types[] = {Type::f32, Type::f32};
-    return b.emit_multi(Op::external, std::vector{b.emit(Op::input, {}, 0), b.emit(Op::input, {}, 1)}, types, 0);
+    return b.emit_multi(Op::external,
+                        std::vector{b.emit(Op::input, {}, 0), b.emit(Op::input, {}, 1)}, types, 0);
   });
   EXPECT_EQ(result.results, (std::vector<Bits>{to_bits(16.0f), to_bits(63.0f)}));
 }
 
 TEST(Interpreter, ArraysAreBoundedAndGrowWithZeros) {
-  const auto result = run([](Builder& b) {
-    const auto at = [&](int i) { return b.const_i32(i); };
-    std::vector<Value> seen;
-    const auto load = [&](int i, int component) { seen.push_back(b.emit(Op::array_load, {at(i)}, 0, component)); };
-    b.emit_void(Op::array_store, {at(0), b.const_f32(5)}, 0, 0);
-    b.emit_void(Op::array_store, {at(0), b.const_f32(6)}, 0, 1);
-    b.emit_void(Op::array_store, {at(3), b.const_f32(7)}, 0, 0);   // at capacity: nothing
-    b.emit_void(Op::array_store, {at(-1), b.const_f32(8)}, 0, 0);  // before the start: nothing
-    b.emit_void(Op::array_store, {at(2), b.const_f32(9)}, 0, 0);   // within capacity, past the length
-    load(0, 0), load(0, 1), load(2, 0), load(-1, 0), load(3, 0);   // 5 6 0 0 0
-    b.emit_void(Op::array_resize, {at(3)}, 0);
-    load(2, 0);                                                    // 0: a new element
-    seen.push_back(b.emit(Op::i2f, {b.emit(Op::array_length, {}, 0)}));  // 3
-    b.emit_void(Op::array_store, {at(2), b.const_f32(9)}, 0, 0);
-    load(2, 0);                                                    // 9
-    b.emit_void(Op::array_resize, {at(-5)}, 0);
-    load(0, 0);                                                    // 0
-    seen.push_back(b.emit(Op::i2f, {b.emit(Op::array_length, {}, 0)}));  // 0
-    b.emit_void(Op::array_resize, {at(99)}, 0);
-    load(2, 0);                                                    // 0 again, though 9 was there
-    seen.push_back(b.emit(Op::i2f, {b.emit(Op::array_length, {}, 0)}));  // 3, the capacity
-    return seen;
-  }, {{.name = "a", .components = 2, .capacity = 3, .initial_length = 1}});
+  const auto result = run(
+      [](Builder& b) {
+        const auto at = [&](int i) { return b.const_i32(i); };
+        std::vector<Value> seen;
+        const auto load = [&](int i, int component) {
+          seen.push_back(b.emit(Op::array_load, {at(i)}, 0, component));
+        };
+        b.emit_void(Op::array_store, {at(0), b.const_f32(5)}, 0, 0);
+        b.emit_void(Op::array_store, {at(0), b.const_f32(6)}, 0, 1);
+        b.emit_void(Op::array_store, {at(3), b.const_f32(7)}, 0, 0);   // at capacity: nothing
+        b.emit_void(Op::array_store, {at(-1), b.const_f32(8)}, 0, 0);  // before the start: nothing
+        b.emit_void(Op::array_store, {at(2), b.const_f32(9)}, 0,
+                    0);  // within capacity, past the length
+        load(0, 0), load(0, 1), load(2, 0), load(-1, 0), load(3, 0);  // 5 6 0 0 0
+        b.emit_void(Op::array_resize, {at(3)}, 0);
+        load(2, 0);                                                          // 0: a new element
+        seen.push_back(b.emit(Op::i2f, {b.emit(Op::array_length, {}, 0)}));  // 3
+        b.emit_void(Op::array_store, {at(2), b.const_f32(9)}, 0, 0);
+        load(2, 0);  // 9
+        b.emit_void(Op::array_resize, {at(-5)}, 0);
+        load(0, 0);                                                          // 0
+        seen.push_back(b.emit(Op::i2f, {b.emit(Op::array_length, {}, 0)}));  // 0
+        b.emit_void(Op::array_resize, {at(99)}, 0);
+        load(2, 0);  // 0 again, though 9 was there
+        seen.push_back(b.emit(Op::i2f, {b.emit(Op::array_length, {}, 0)}));  // 3, the capacity
+        return seen;
+      },
+      {{.name = "a", .components = 2, .capacity = 3, .initial_length = 1}});
   const std::vector<float> expected = {5, 6, 0, 0, 0, 0, 3, 9, 0, 0, 0, 3};
   ASSERT_EQ(result.results.size(), expected.size());
-  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(to_f32(result.results[i]), expected[i]) << i;
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    EXPECT_EQ(to_f32(result.results[i]), expected[i]) << i;
 }
 
 TEST(Interpreter, ACheckThatFailsEndsTheRun) {

@@ -54,8 +54,9 @@ TEST(Text, RandomModulesAreValidAndReadBackAsThemselves) {
 
 TEST(Text, KeepsNamesPlacesAndEveryFloat) {
   Module module;
-  module.float_tables = {{"odd \"name\"\n\\", {0.1f, -0.0f, INFINITY, -INFINITY, to_f32(nan_bits), to_f32(0xffa00001u),
-                                              1e-45f, 3.4028235e38f}}};
+  module.float_tables = {{"odd \"name\"\n\\",
+                          {0.1f, -0.0f, INFINITY, -INFINITY, to_f32(nan_bits), to_f32(0xffa00001u),
+                           1e-45f, 3.4028235e38f}}};
   module.checks = {{{2, 10, 20}, "index out of range"}};
   module.functions.push_back({.name = "main"});
   Builder b(module, module.functions[0]);
@@ -65,7 +66,8 @@ TEST(Text, KeepsNamesPlacesAndEveryFloat) {
   ASSERT_TRUE(back) << back.error();
   EXPECT_EQ(back->float_tables[0].name, module.float_tables[0].name);
   for (std::size_t i = 0; i < 8; ++i) {
-    EXPECT_EQ(to_bits(back->float_tables[0].entries[i]), to_bits(module.float_tables[0].entries[i])) << i;
+    EXPECT_EQ(to_bits(back->float_tables[0].entries[i]), to_bits(module.float_tables[0].entries[i]))
+        << i;
   }
   EXPECT_EQ(back->checks[0].span, (Span{2, 10, 20}));
   EXPECT_EQ(back->functions[0].body.body[0].span, (Span{1, 5, 9}));
@@ -79,7 +81,8 @@ TEST(Text, TellsTheLineOfAMistake) {
   EXPECT_EQ(error_of("entry function 0 \"main\" {\n  %0 = fade\n  yield\n}"),
             "line 2: an operator was expected, not 'fade'");
   EXPECT_EQ(error_of("function 0 \"f\" (%0) {"), "line 1: a parameter has a type, not ')'");
-  EXPECT_EQ(error_of("function 0 \"f\" {\n %0 = const.f 1"), "line 2: an operator was expected, not ''");
+  EXPECT_EQ(error_of("function 0 \"f\" {\n %0 = const.f 1"),
+            "line 2: an operator was expected, not ''");
   EXPECT_EQ(error_of("input 0 \"x"), "line 1: a quoted name does not end");
   EXPECT_EQ(error_of("input 0 \"x\" often"), "line 1: a rate was expected, not 'often'");
   EXPECT_EQ(error_of("function 0 \"f\" {\n %99999999 = const.f 1\n yield }"),

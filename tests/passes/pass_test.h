@@ -22,7 +22,8 @@ input 3 "Size" frame
 output 0 "out"
 check 0 "must hold"
 external 0 "lookup" 1 1
-)" + functions + "entry function 9 \"main\" {\n" + body + "}\n";
+)" + functions + "entry function 9 \"main\" {\n" +
+                           body + "}\n";
   auto module = ir::parse(text);
   EXPECT_TRUE(module) << module.error();
   if (!module) return {};
@@ -31,7 +32,8 @@ external 0 "lookup" 1 1
   return std::move(*module);
 }
 
-// The body of the entry function after a pass, as text without comments, marks of rate, and indentation.
+// The body of the entry function after a pass, as text without comments, marks of rate, and
+// indentation.
 inline std::string body_of(const ir::Function& function) {
   ir::Module alone;
   alone.functions.push_back(function);

@@ -10,7 +10,8 @@ using ir::Op;
 using test::count;
 using test::module_of;
 
-// What becomes of one instruction %9 that computes from %0 (x), %1 (y), %2 .. %8 as below: the text of what is yielded.
+// What becomes of one instruction %9 that computes from %0 (x), %1 (y), %2 .. %8 as below: the text
+// of what is yielded.
 std::string folded(const std::string& instruction) {
   const std::string before = R"(  %0 = input 0
   %1 = input 1
@@ -25,9 +26,11 @@ std::string folded(const std::string& instruction) {
   // Integers and booleans reach the output through one more instruction.
   const bool is_float = instruction.starts_with("f:");
   const bool is_integer = instruction.starts_with("i:");
-  const std::string wrap = is_float ? "  yield %19\n"
-                           : is_integer ? "  %20 = i2f %19\n  yield %20\n"
-                                        : "  %20 = fle %1 %0\n  %21 = band %19 %20\n  %22 = select %21 %4 %0\n  yield %22\n";
+  const std::string wrap =
+      is_float ? "  yield %19\n"
+      : is_integer
+          ? "  %20 = i2f %19\n  yield %20\n"
+          : "  %20 = fle %1 %0\n  %21 = band %19 %20\n  %22 = select %21 %4 %0\n  yield %22\n";
   ir::Module module = module_of(before + instruction.substr(2) + "\n" + wrap);
   fold(module);
   remove_dead(module);
@@ -37,7 +40,8 @@ std::string folded(const std::string& instruction) {
   ir::Value wanted = body.yields[0];
   // Back from the output to what was folded.
   const auto definition = [&](ir::Value value) -> const ir::Instruction& {
-    return *std::ranges::find_if(body.body, [&](const ir::Instruction& in) { return in.results[0] == value; });
+    return *std::ranges::find_if(body.body,
+                                 [&](const ir::Instruction& in) { return in.results[0] == value; });
   };
   if (!is_float) wanted = definition(wanted).operands[0];
   if (!is_float && !is_integer) wanted = definition(wanted).operands[0];
@@ -85,7 +89,8 @@ TEST(Fold, RewritesWhatIsExact) {
   EXPECT_EQ(folded("b:%18 = feq %0 %1\n%19 = bnot %18"), "fne %0 %1");
   EXPECT_EQ(folded("b:%18 = ilt %2 %5\n%19 = bnot %18").substr(0, 3), "ile");
   EXPECT_EQ(folded("b:%19 = fle %0 %0"), "feq %0 %0");
-  EXPECT_EQ(folded("b:%18 = const.b true\n%17 = const.b false\n%19 = select %3 %18 %17"), "flt %0 %1");
+  EXPECT_EQ(folded("b:%18 = const.b true\n%17 = const.b false\n%19 = select %3 %18 %17"),
+            "flt %0 %1");
   EXPECT_EQ(folded("b:%18 = const.b true\n%19 = bxor %3 %18"), "bnot %3");
 }
 
@@ -169,7 +174,8 @@ TEST(Fold, RunsCallsOfConstants) {
   auto module = module_of(R"(  %0 = const.f 3
   %1:f = call 0 %0
   yield %1
-)", R"(function 0 "cube" (%0:f) {
+)",
+                          R"(function 0 "cube" (%0:f) {
   %1 = fmul %0 %0
   %2 = fmul %1 %0
   yield %2
@@ -188,7 +194,8 @@ TEST(Fold, LeavesCallsThatDoNotEndOrAskTheHost) {
   %2:f = call 1 %0
   %3 = fadd %1 %2
   yield %3
-)", R"(function 0 "forever" (%0:f) {
+)",
+                          R"(function 0 "forever" (%0:f) {
   %1 = const.b true
   loop while {
     yield %1

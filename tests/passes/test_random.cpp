@@ -34,28 +34,37 @@ void expect_same_meaning(const std::function<void(ir::Module&)>& pass, std::uint
     const ir::Module before = test::random_module(seed, options_of(seed));
     ir::Module after = before;
     pass(after);
-    ASSERT_EQ(first_complaint(after), "") << "seed " << seed << "\n" << ir::print(before) << ir::print(after);
+    ASSERT_EQ(first_complaint(after), "") << "seed " << seed << "\n"
+                                          << ir::print(before) << ir::print(after);
     for (int sample = 0; sample < samples; ++sample) {
-      const auto inputs = test::random_inputs(before, seed * 100 + static_cast<std::uint64_t>(sample));
+      const auto inputs =
+          test::random_inputs(before, seed * 100 + static_cast<std::uint64_t>(sample));
       const auto expected = test::run_module(before, inputs, &test::random_externals());
       const auto actual = test::run_module(after, inputs, &test::random_externals());
-      ASSERT_EQ(actual, expected) << "seed " << seed << "\n" << ir::print(before) << "\nbecame\n" << ir::print(after);
+      ASSERT_EQ(actual, expected) << "seed " << seed << "\n"
+                                  << ir::print(before) << "\nbecame\n"
+                                  << ir::print(after);
     }
   }
 }
 
-// Runs something that splits, and compares the two functions, one after the other, with the module as it was.
-void expect_same_split(const std::function<SplitModule(ir::Module)>& cut, std::uint64_t first_seed) {
+// Runs something that splits, and compares the two functions, one after the other, with the module
+// as it was.
+void expect_same_split(const std::function<SplitModule(ir::Module)>& cut,
+                       std::uint64_t first_seed) {
   for (std::uint64_t seed = first_seed; seed < first_seed + modules; ++seed) {
     const ir::Module before = test::random_module(seed, options_of(seed));
     const SplitModule after = cut(before);
-    ASSERT_EQ(first_complaint(after.module), "") << "seed " << seed << "\n" << ir::print(before) << "\nbecame\n"
+    ASSERT_EQ(first_complaint(after.module), "") << "seed " << seed << "\n"
+                                                 << ir::print(before) << "\nbecame\n"
                                                  << ir::print(after.module);
     for (int sample = 0; sample < samples; ++sample) {
-      const auto inputs = test::random_inputs(before, seed * 100 + static_cast<std::uint64_t>(sample));
+      const auto inputs =
+          test::random_inputs(before, seed * 100 + static_cast<std::uint64_t>(sample));
       const auto expected = test::run_module(before, inputs, &test::random_externals());
       const auto actual = test::run_split(after, inputs, &test::random_externals());
-      ASSERT_EQ(actual, expected) << "seed " << seed << "\n" << ir::print(before) << "\nbecame\n"
+      ASSERT_EQ(actual, expected) << "seed " << seed << "\n"
+                                  << ir::print(before) << "\nbecame\n"
                                   << ir::print(after.module);
     }
   }
@@ -79,10 +88,12 @@ TEST(RandomModules, UnrollKeepsMeaning) {
 TEST(RandomModules, DecideKeepsMeaning) { expect_same_meaning(decide, 140'000); }
 TEST(RandomModules, HoistKeepsMeaning) { expect_same_meaning(hoist, 70'000); }
 TEST(RandomModules, HoistFrameKeepsMeaning) {
-  expect_same_meaning([](ir::Module& m) {
-    assign_rates(m);
-    hoist_frame(m);
-  }, 80'000);
+  expect_same_meaning(
+      [](ir::Module& m) {
+        assign_rates(m);
+        hoist_frame(m);
+      },
+      80'000);
 }
 TEST(RandomModules, SplitKeepsMeaning) { expect_same_split(split, 90'000); }
 TEST(RandomModules, SplitNothingKeepsMeaning) { expect_same_split(split_nothing, 100'000); }
@@ -90,7 +101,8 @@ TEST(RandomModules, PipelineKeepsMeaning) {
   expect_same_split([](ir::Module m) { return run_pipeline(std::move(m)); }, 110'000);
 }
 TEST(RandomModules, PipelineWithoutOptimisationKeepsMeaning) {
-  expect_same_split([](ir::Module m) { return run_pipeline(std::move(m), {.optimize = false}); }, 120'000);
+  expect_same_split([](ir::Module m) { return run_pipeline(std::move(m), {.optimize = false}); },
+                    120'000);
 }
 
 TEST(RandomModules, EveryStepOfThePipelineIsValid) {

@@ -14,7 +14,10 @@ using ir::Op;
 using ir::Type;
 
 Type type_of(char letter, Type generic) {
-  return letter == 'f' ? Type::f32 : letter == 'i' ? Type::i32 : letter == 'b' ? Type::boolean : generic;
+  return letter == 'f'   ? Type::f32
+         : letter == 'i' ? Type::i32
+         : letter == 'b' ? Type::boolean
+                         : generic;
 }
 
 ir::Bits random_bits(test::Dice& dice, Type type) {
@@ -25,7 +28,8 @@ ir::Bits random_bits(test::Dice& dice, Type type) {
 
 double number(ir::Bits bits, Type type) {
   if (type == Type::f32) return double{ir::to_f32(bits)};
-  return type == Type::i32 ? static_cast<double>(static_cast<std::int32_t>(bits)) : static_cast<double>(bits);
+  return type == Type::i32 ? static_cast<double>(static_cast<std::int32_t>(bits))
+                           : static_cast<double>(bits);
 }
 
 bool holds(const Range& range, ir::Bits bits, Type type) {
@@ -49,8 +53,9 @@ Range around(const std::vector<ir::Bits>& values, Type type) {
 TEST(Range, HoldsEveryResult) {
   test::Dice dice(7);
   for (int i = 0; i < 200'000; ++i) {
-    const auto op = static_cast<Op>(static_cast<int>(Op::fadd) +
-                                    dice.below(static_cast<int>(Op::bits2f) - static_cast<int>(Op::fadd) + 1));
+    const auto op =
+        static_cast<Op>(static_cast<int>(Op::fadd) +
+                        dice.below(static_cast<int>(Op::bits2f) - static_cast<int>(Op::fadd) + 1));
     const std::string_view letters = ir::info(op).operands;
     const Type generic = static_cast<Type>(dice.below(3));
     std::vector<ir::Bits> values[3];
@@ -63,13 +68,15 @@ TEST(Range, HoldsEveryResult) {
     }
     const Type result = type_of(ir::info(op).results[0], generic);
     const Range range = range_of(op, ranges[0], ranges[1], ranges[2], result);
-    const auto operand = [&](std::size_t k) { return values[k].empty() ? 0 : dice.pick(values[k]); };
+    const auto operand = [&](std::size_t k) {
+      return values[k].empty() ? 0 : dice.pick(values[k]);
+    };
     for (int n = 0; n < 4; ++n) {
       const ir::Bits a = operand(0), b = operand(1), c = operand(2);
       const ir::Bits answer = ir::evaluate(op, a, b, c);
       ASSERT_TRUE(holds(range, answer, result))
-          << ir::info(op).name << " of " << a << " " << b << " " << c << " gives " << answer << ", not within "
-          << range.lo << " .. " << range.hi;
+          << ir::info(op).name << " of " << a << " " << b << " " << c << " gives " << answer
+          << ", not within " << range.lo << " .. " << range.hi;
     }
   }
 }

@@ -39,10 +39,12 @@ TEST(Rates, FollowOperandsAndControl) {
   EXPECT_EQ(rate_of(module, 3), Rate::constant);
   EXPECT_EQ(rate_of(module, 4), Rate::frame);
   EXPECT_EQ(rate_of(module, 5), Rate::sample);
-  EXPECT_EQ(rate_of(module, 10), Rate::sample);  // chosen per sample, though both sides give the same
-  EXPECT_EQ(rate_of(module, 12), Rate::frame);   // constants chosen per frame
+  EXPECT_EQ(rate_of(module, 10),
+            Rate::sample);  // chosen per sample, though both sides give the same
+  EXPECT_EQ(rate_of(module, 12), Rate::frame);  // constants chosen per frame
   EXPECT_EQ(rate_of(module, 13), Rate::sample);
-  EXPECT_EQ(rate_of(module, 14), Rate::frame);   // the host may bring another picture for another frame
+  EXPECT_EQ(rate_of(module, 14),
+            Rate::frame);  // the host may bring another picture for another frame
 }
 
 TEST(Rates, LoopsRaiseWhatTheyCarry) {
@@ -79,12 +81,14 @@ TEST(Rates, LoopsRaiseWhatTheyCarry) {
 }
 
 Rate array_rate(const std::string& work) {
-  auto module = module_of("  array 0 \"a\" 1 4 4 sample\n  %0 = input 0\n  %1 = input 2\n  %2 = const.i 1\n"
-                          "  %3 = flt %0 %1\n  %4 = flt %1 %1\n  %5 = f2i %0\n" + work +
-                          "  %90 = array.load 0.0 %5\n  yield %90\n");
+  auto module = module_of(
+      "  array 0 \"a\" 1 4 4 sample\n  %0 = input 0\n  %1 = input 2\n  %2 = const.i 1\n"
+      "  %3 = flt %0 %1\n  %4 = flt %1 %1\n  %5 = f2i %0\n" +
+      work + "  %90 = array.load 0.0 %5\n  yield %90\n");
   const SplitModule result = split(std::move(module));
   EXPECT_TRUE(ir::verify(result.module).empty());
-  EXPECT_EQ(result.module.main().arrays[0].rate, result.module.functions[result.frame].arrays[0].rate);
+  EXPECT_EQ(result.module.main().arrays[0].rate,
+            result.module.functions[result.frame].arrays[0].rate);
   return result.module.main().arrays[0].rate;
 }
 
@@ -94,10 +98,14 @@ TEST(Rates, AnArrayIsOfTheFrameIfAllThatWritesItIsAndItIsReadBehind) {
   EXPECT_EQ(array_rate("array.store 0.0 %2 %0\n"), Rate::sample);
   EXPECT_EQ(array_rate("array.store 0.0 %5 %1\n"), Rate::sample);
   EXPECT_EQ(array_rate("array.resize 0 %5\n"), Rate::sample);
-  EXPECT_EQ(array_rate("if %3 {\n array.store 0.0 %2 %1\n yield\n } else {\n yield\n }\n"), Rate::sample);
-  EXPECT_EQ(array_rate("if %4 {\n array.store 0.0 %2 %1\n yield\n } else {\n yield\n }\n"), Rate::frame);
+  EXPECT_EQ(array_rate("if %3 {\n array.store 0.0 %2 %1\n yield\n } else {\n yield\n }\n"),
+            Rate::sample);
+  EXPECT_EQ(array_rate("if %4 {\n array.store 0.0 %2 %1\n yield\n } else {\n yield\n }\n"),
+            Rate::frame);
   // Read by the sample before the last write.
-  EXPECT_EQ(array_rate("%6 = array.load 0.0 %5\n %7 = flt %6 %1\n check 0 %7\n array.store 0.0 %2 %1\n"), Rate::sample);
+  EXPECT_EQ(
+      array_rate("%6 = array.load 0.0 %5\n %7 = flt %6 %1\n check 0 %7\n array.store 0.0 %2 %1\n"),
+      Rate::sample);
   // Read by the frame before the last write.
   EXPECT_EQ(array_rate("%6 = array.load 0.0 %2\n array.store 0.0 %2 %6\n"), Rate::frame);
   // In a loop with work of both, the sample would read the end's state in every turn.
@@ -112,7 +120,8 @@ TEST(Rates, AnArrayIsOfTheFrameIfAllThatWritesItIsAndItIsReadBehind) {
     %9 = iadd %30 %2
     yield %9
   }
-)"), Rate::sample);
+)"),
+            Rate::sample);
 }
 
 TEST(Split, TheFrameComputesWhatIsTheSameForAllSamples) {
@@ -126,8 +135,9 @@ TEST(Split, TheFrameComputesWhatIsTheSameForAllSamples) {
   yield %6
 )");
   const SplitModule result = run_pipeline(std::move(module));
-  EXPECT_EQ(body_of(result.module.main()), "%0 = input 4\n%1 = input 0\n%2 = const.f 2\n%3 = fmul %0 %1\n"
-                                           "%4 = fadd %3 %2\nyield %4\n");
+  EXPECT_EQ(body_of(result.module.main()),
+            "%0 = input 4\n%1 = input 0\n%2 = const.f 2\n%3 = fmul %0 %1\n"
+            "%4 = fadd %3 %2\nyield %4\n");
   EXPECT_EQ(body_of(result.module.functions[result.frame]),
             "%0 = input 2\n%1 = const.f 2\n%2 = fsqrt %0\n%3 = fmul %2 %1\nyield %3\n");
   ASSERT_EQ(result.module.inputs.size(), 5u);

@@ -1,5 +1,5 @@
-// Valid random modules over every operator, biased to edge values, for tests that compare two ways to run the same IR.
-// The same seed gives the same module on every machine.
+// Valid random modules over every operator, biased to edge values, for tests that compare two ways
+// to run the same IR. The same seed gives the same module on every machine.
 #pragma once
 
 #include <array>
@@ -20,9 +20,9 @@ struct RandomIrOptions {
   int instructions = 40;  // about so many per function
   bool arrays = true;
   bool calls = true;
-  bool checks = false;    // checks fail now and then
+  bool checks = false;  // checks fail now and then
   bool externals = true;
-  bool control = true;    // ifs and loops
+  bool control = true;  // ifs and loops
 };
 
 // Small deterministic choices.
@@ -33,33 +33,77 @@ class Dice {
   int below(int n) { return static_cast<int>(bits() % static_cast<std::uint32_t>(n)); }
   bool one_in(int n) { return below(n) == 0; }
   template <typename T, std::size_t n>
-  const T& pick(const std::array<T, n>& from) { return from[static_cast<std::size_t>(below(n))]; }
+  const T& pick(const std::array<T, n>& from) {
+    return from[static_cast<std::size_t>(below(n))];
+  }
   template <typename T>
-  const T& pick(const std::vector<T>& from) { return from[static_cast<std::size_t>(below(static_cast<int>(from.size())))]; }
+  const T& pick(const std::vector<T>& from) {
+    return from[static_cast<std::size_t>(below(static_cast<int>(from.size())))];
+  }
 
   // Zeros, infinities, NaN, subnormals, the ends of what f2i and i2f can do, and ordinary numbers.
   float floating() {
-    static const std::array<float, 26> edges = {
-        0.0f, -0.0f, 1.0f, -1.0f, 2.0f, -0.5f, 0.5f, 1.5f, 2.5f, -2.5f, 0.1f, 3.0f,
-        std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
-        std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::min(),
-        std::numeric_limits<float>::denorm_min(), -1e-40f, std::numeric_limits<float>::max(), 8388608.0f,
-        16777216.0f, 16777218.0f, 2147483648.0f, -2147483648.0f, 2147483520.0f, 1e30f};
+    static const std::array<float, 26> edges = {0.0f,
+                                                -0.0f,
+                                                1.0f,
+                                                -1.0f,
+                                                2.0f,
+                                                -0.5f,
+                                                0.5f,
+                                                1.5f,
+                                                2.5f,
+                                                -2.5f,
+                                                0.1f,
+                                                3.0f,
+                                                std::numeric_limits<float>::infinity(),
+                                                -std::numeric_limits<float>::infinity(),
+                                                std::numeric_limits<float>::quiet_NaN(),
+                                                std::numeric_limits<float>::min(),
+                                                std::numeric_limits<float>::denorm_min(),
+                                                -1e-40f,
+                                                std::numeric_limits<float>::max(),
+                                                8388608.0f,
+                                                16777216.0f,
+                                                16777218.0f,
+                                                2147483648.0f,
+                                                -2147483648.0f,
+                                                2147483520.0f,
+                                                1e30f};
     switch (below(4)) {
-      case 0: return pick(edges);
-      case 1: return std::ldexp(static_cast<float>(bits() & 0xffffff) - 8388608.0f, below(60) - 50);
-      case 2: return static_cast<float>(below(21) - 10);
-      default: return (static_cast<float>(bits() >> 8) * 0x1p-24f - 0.5f) * 8.0f;
+      case 0:
+        return pick(edges);
+      case 1:
+        return std::ldexp(static_cast<float>(bits() & 0xffffff) - 8388608.0f, below(60) - 50);
+      case 2:
+        return static_cast<float>(below(21) - 10);
+      default:
+        return (static_cast<float>(bits() >> 8) * 0x1p-24f - 0.5f) * 8.0f;
     }
   }
   std::int32_t integer() {
-    static const std::array<std::int32_t, 16> edges = {0, 1, -1, 2, 3, 7, 31, 32, 33, 255, -256, 0x01020304,
-                                                       16777217, std::numeric_limits<std::int32_t>::max(),
-                                                       std::numeric_limits<std::int32_t>::min(), -2147483647};
+    static const std::array<std::int32_t, 16> edges = {0,
+                                                       1,
+                                                       -1,
+                                                       2,
+                                                       3,
+                                                       7,
+                                                       31,
+                                                       32,
+                                                       33,
+                                                       255,
+                                                       -256,
+                                                       0x01020304,
+                                                       16777217,
+                                                       std::numeric_limits<std::int32_t>::max(),
+                                                       std::numeric_limits<std::int32_t>::min(),
+                                                       -2147483647};
     switch (below(3)) {
-      case 0: return pick(edges);
-      case 1: return below(12) - 2;
-      default: return static_cast<std::int32_t>(bits());
+      case 0:
+        return pick(edges);
+      case 1:
+        return below(12) - 2;
+      default:
+        return static_cast<std::int32_t>(bits());
     }
   }
 
@@ -73,8 +117,11 @@ class RandomIr {
 
   ir::Module make() {
     make_tables();
-    module_.inputs = {{"x", ir::Rate::sample}, {"y", ir::Rate::sample}, {"z", ir::Rate::sample},
-                      {"time", ir::Rate::frame}, {"Size", ir::Rate::frame}};
+    module_.inputs = {{"x", ir::Rate::sample},
+                      {"y", ir::Rate::sample},
+                      {"z", ir::Rate::sample},
+                      {"time", ir::Rate::frame},
+                      {"Size", ir::Rate::frame}};
     module_.checks = {{{}, "first"}, {{}, "second"}};
     if (options_.externals) module_.externals = {{"one of two", 2, 1}, {"two of one", 1, 2}};
 
@@ -82,7 +129,8 @@ class RandomIr {
     for (int i = 0; i < callees; ++i) make_function("f" + std::to_string(i), false);
     module_.entry = static_cast<std::uint32_t>(module_.functions.size());
     make_function("main", true);
-    for (std::size_t i = 0; i < module_.main().body.yields.size(); ++i) module_.outputs.push_back({"o" + std::to_string(i)});
+    for (std::size_t i = 0; i < module_.main().body.yields.size(); ++i)
+      module_.outputs.push_back({"o" + std::to_string(i)});
     return std::move(module_);
   }
 
@@ -112,7 +160,9 @@ class RandomIr {
     if (entry && options_.arrays) {
       const int arrays = dice_.below(4);
       for (int i = 0; i < arrays; ++i) {
-        ir::Array array{.name = "a" + std::to_string(i), .components = 1 + dice_.below(3), .capacity = dice_.below(10)};
+        ir::Array array{.name = "a" + std::to_string(i),
+                        .components = 1 + dice_.below(3),
+                        .capacity = dice_.below(10)};
         array.initial_length = dice_.one_in(3) ? 0 : dice_.below(array.capacity + 1);
         function.arrays.push_back(array);
       }
@@ -145,9 +195,12 @@ class RandomIr {
 
   ir::Value constant(Type type) {
     switch (type) {
-      case Type::f32: return b_->const_f32(dice_.floating());
-      case Type::i32: return b_->const_i32(dice_.integer());
-      default: return b_->const_bool(dice_.one_in(2));
+      case Type::f32:
+        return b_->const_f32(dice_.floating());
+      case Type::i32:
+        return b_->const_i32(dice_.integer());
+      default:
+        return b_->const_bool(dice_.one_in(2));
     }
   }
 
@@ -189,7 +242,8 @@ class RandomIr {
     const auto& values = pool_[static_cast<std::size_t>(type)];
     const ir::Value value = values.empty() ? any(type) : dice_.pick(values);
     if (type == Type::i32) return b_->emit(Op::i2f, {value});
-    if (type == Type::boolean) return b_->emit(Op::select, {value, b_->const_f32(1.0f), b_->const_f32(0.0f)});
+    if (type == Type::boolean)
+      return b_->emit(Op::select, {value, b_->const_f32(1.0f), b_->const_f32(0.0f)});
     return value;
   }
 
@@ -232,14 +286,20 @@ class RandomIr {
     std::int32_t imm = 0;
     if (op == Op::table_f32) imm = dice_.below(static_cast<int>(module_.float_tables.size()));
     switch (letters.size()) {
-      case 1: return add(b_->emit(op, {v[0]}, imm));
-      case 2: return add(b_->emit(op, {v[0], v[1]}, imm));
-      default: return add(b_->emit(op, {v[0], v[1], v[2]}, imm));
+      case 1:
+        return add(b_->emit(op, {v[0]}, imm));
+      case 2:
+        return add(b_->emit(op, {v[0], v[1]}, imm));
+      default:
+        return add(b_->emit(op, {v[0], v[1], v[2]}, imm));
     }
   }
 
   Type type_of(char letter, Type generic) {
-    return letter == 'f' ? Type::f32 : letter == 'i' ? Type::i32 : letter == 'b' ? Type::boolean : generic;
+    return letter == 'f'   ? Type::f32
+           : letter == 'i' ? Type::i32
+           : letter == 'b' ? Type::boolean
+                           : generic;
   }
 
   // The bits of a NaN are nobody's business, so only numbers are asked for theirs.
@@ -252,7 +312,8 @@ class RandomIr {
 
   void make_array_access() {
     const int array = dice_.below(static_cast<int>(b_->function().arrays.size()));
-    const int component = dice_.below(b_->function().arrays[static_cast<std::size_t>(array)].components);
+    const int component =
+        dice_.below(b_->function().arrays[static_cast<std::size_t>(array)].components);
     // Mostly small indices, so that arrays are hit, and the same ones.
     const auto small = [&] {
       if (!dice_.one_in(3)) return dice_.pick(indices_);
@@ -262,15 +323,18 @@ class RandomIr {
     // Every other array is written with values of the frame only, so that some are of rate frame.
     const bool calm = array % 2 == 1;
     switch (dice_.below(7)) {
-      case 0: return b_->emit_void(Op::array_resize, {calm ? dice_.pick(calm_indices_) : small()}, array);
-      case 1: return add(b_->emit(Op::array_length, {}, array));
+      case 0:
+        return b_->emit_void(Op::array_resize, {calm ? dice_.pick(calm_indices_) : small()}, array);
+      case 1:
+        return add(b_->emit(Op::array_length, {}, array));
       case 2:
       case 3: {
         const ir::Value index = calm ? dice_.pick(calm_indices_) : small();
         const ir::Value value = calm ? dice_.pick(calm_values_) : any(Type::f32);
         return b_->emit_void(Op::array_store, {index, value}, array, component);
       }
-      default: return add(b_->emit(Op::array_load, {small()}, array, component));
+      default:
+        return add(b_->emit(Op::array_load, {small()}, array, component));
     }
   }
 
@@ -279,9 +343,11 @@ class RandomIr {
     // A copy: types of the callee's parameters and results.
     const ir::Function& function = module_.functions[static_cast<std::size_t>(callee)];
     std::vector<ir::Value> operands;
-    for (const ir::Value param : function.body.params) operands.push_back(any(function.values[param].type));
+    for (const ir::Value param : function.body.params)
+      operands.push_back(any(function.values[param].type));
     std::vector<Type> types;
-    for (const ir::Value result : function.body.yields) types.push_back(function.values[result].type);
+    for (const ir::Value result : function.body.yields)
+      types.push_back(function.values[result].type);
     for (const ir::Value result : b_->emit_multi(Op::call, operands, types, callee)) add(result);
   }
 
@@ -309,13 +375,16 @@ class RandomIr {
       region.yields = yields;
       pool_ = outer;
     }
-    for (const ir::Value result : b_->emit_if(condition, std::move(regions[0]), std::move(regions[1]))) add(result);
+    for (const ir::Value result :
+         b_->emit_if(condition, std::move(regions[0]), std::move(regions[1])))
+      add(result);
   }
 
   // A loop of a few turns: the first parameter counts up to a small number.
   void make_loop(int depth) {
-    const ir::Value limit = dice_.one_in(2) ? b_->const_i32(dice_.below(6))
-                                            : b_->emit(Op::iand, {any(Type::i32), b_->const_i32(3)});
+    const ir::Value limit = dice_.one_in(2)
+                                ? b_->const_i32(dice_.below(6))
+                                : b_->emit(Op::iand, {any(Type::i32), b_->const_i32(3)});
     std::vector<Type> types = {Type::i32};
     std::vector<ir::Value> initial = {b_->const_i32(dice_.one_in(4) ? 3 : 0)};
     const int carried = dice_.below(4);
@@ -339,11 +408,13 @@ class RandomIr {
     for (const Type type : types) add(b_->add_param(body, type), type);
     fill(1 + dice_.below(8), depth + 1);
     std::vector<ir::Value> yields = {b_->emit(Op::iadd, {body.params[0], b_->const_i32(1)})};
-    for (std::size_t i = 1; i < types.size(); ++i) yields.push_back(dice_.one_in(5) ? body.params[i] : any(types[i]));
+    for (std::size_t i = 1; i < types.size(); ++i)
+      yields.push_back(dice_.one_in(5) ? body.params[i] : any(types[i]));
     b_->end_region();
     body.yields = yields;
     pool_ = outer;
-    for (const ir::Value result : b_->emit_loop(initial, std::move(head), std::move(body))) add(result);
+    for (const ir::Value result : b_->emit_loop(initial, std::move(head), std::move(body)))
+      add(result);
   }
 
   Dice dice_;
@@ -363,15 +434,15 @@ inline ir::Module random_module(std::uint64_t seed, const RandomIrOptions& optio
 
 // What the externals of random modules do.
 inline const ir::ExternalCallback& random_externals() {
-  static const ir::ExternalCallback callback = [](std::uint32_t external, std::span<const float> arguments,
-                                                  std::span<float> results) {
-    if (external == 0) {
-      results[0] = arguments[0] * 0.5f + arguments[1];
-    } else {
-      results[0] = arguments[0] + 1.0f;
-      results[1] = arguments[0] * arguments[0];
-    }
-  };
+  static const ir::ExternalCallback callback =
+      [](std::uint32_t external, std::span<const float> arguments, std::span<float> results) {
+        if (external == 0) {
+          results[0] = arguments[0] * 0.5f + arguments[1];
+        } else {
+          results[0] = arguments[0] + 1.0f;
+          results[1] = arguments[0] * arguments[0];
+        }
+      };
   return callback;
 }
 

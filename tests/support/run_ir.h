@@ -33,7 +33,8 @@ inline RunResult run_split(const passes::SplitModule& split, std::span<const flo
   uniforms.resize(module.inputs.size());
   const ir::Function& frame = module.functions[split.frame];
   ir::ArrayMemory memory(frame);
-  const ir::Environment environment{.inputs = uniforms, .arrays = memory.views(), .external = external};
+  const ir::Environment environment{
+      .inputs = uniforms, .arrays = memory.views(), .external = external};
 
   // The frame must not see what belongs to the sample.
   std::vector<float> frame_inputs = uniforms;
@@ -45,7 +46,8 @@ inline RunResult run_split(const passes::SplitModule& split, std::span<const flo
   std::vector<ir::Bits> slots(frame.body.yields.size());
   ir::Outcome outcome = interpreter.run(split.frame, {}, frame_environment, slots);
   if (outcome.end != ir::End::finished) return {outcome.end, {}};
-  for (std::size_t i = 0; i < slots.size(); ++i) uniforms[split.first_slot + i] = ir::to_f32(slots[i]);
+  for (std::size_t i = 0; i < slots.size(); ++i)
+    uniforms[split.first_slot + i] = ir::to_f32(slots[i]);
 
   RunResult result;
   result.outputs.resize(module.outputs.size());

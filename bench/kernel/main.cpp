@@ -1,6 +1,7 @@
 // bench_kernel [rounds]: checks what every kernel computes, then prints how fast it is.
-// One thread. In each round everything runs once, so that whatever disturbs the machine disturbs all; times are of the
-// thread, not of the clock on the wall. "limit" is the better of the hand-written loops; ratios are medians over rounds.
+// One thread. In each round everything runs once, so that whatever disturbs the machine disturbs
+// all; times are of the thread, not of the clock on the wall. "limit" is the better of the
+// hand-written loops; ratios are medians over rounds.
 #include <time.h>
 
 #include <algorithm>
@@ -59,7 +60,8 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-std::unique_ptr<Kernel> compiled(const Scene& scene, int width, const std::string& cpu, double& ms) {
+std::unique_ptr<Kernel> compiled(const Scene& scene, int width, const std::string& cpu,
+                                 double& ms) {
   CodegenOptions options;
   options.width = width;
   options.cpu = cpu;
@@ -77,21 +79,25 @@ void check(const std::string& name, const Scene& scene, Points& points) {
   for (std::int64_t s = 0; s < samples; ++s) {
     const float expected = scene.expected(points.in(0)[s], points.in(1)[s], points.in(2)[s]);
     if (std::fabs(points.out(0)[s] - expected) <= 4e-6f) continue;
-    std::fprintf(stderr, "%s: sample %d is %.9g, not %.9g\n", name.c_str(), static_cast<int>(s), points.out(0)[s], expected);
+    std::fprintf(stderr, "%s: sample %d is %.9g, not %.9g\n", name.c_str(), static_cast<int>(s),
+                 points.out(0)[s], expected);
     std::exit(1);
   }
 }
 
 void print(const std::vector<Row>& rows, const std::vector<double>& limit) {
-  std::printf("%-46s %8s %8s %8s %8s %9s %8s\n", "", "ns", "+-%", "M/s", "noise/s", "of limit", "compile");
+  std::printf("%-46s %8s %8s %8s %8s %9s %8s\n", "", "ns", "+-%", "M/s", "noise/s", "of limit",
+              "compile");
   for (const Row& row : rows) {
     const double middle = median(row.ns);
     std::vector<double> sorted = row.ns, ratios;
     std::ranges::sort(sorted);
-    for (std::size_t i = 0; i < row.ns.size() && i < limit.size(); ++i) ratios.push_back(limit[i] * row.noises / row.ns[i]);
+    for (std::size_t i = 0; i < row.ns.size() && i < limit.size(); ++i)
+      ratios.push_back(limit[i] * row.noises / row.ns[i]);
     const double spread = 50 * (sorted[sorted.size() * 3 / 4] - sorted[sorted.size() / 4]) / middle;
-    std::printf("%-46s %8.3f %8.1f %8.1f %8.1f %9.3f %8.1f\n", row.name.c_str(), middle, spread, 1e3 / middle,
-                1e3 * row.noises / middle, ratios.empty() ? 0.0 : median(ratios), row.compile_ms);
+    std::printf("%-46s %8.3f %8.1f %8.1f %8.1f %9.3f %8.1f\n", row.name.c_str(), middle, spread,
+                1e3 / middle, 1e3 * row.noises / middle, ratios.empty() ? 0.0 : median(ratios),
+                row.compile_ms);
   }
 }
 
@@ -101,8 +107,24 @@ int run(int rounds) {
   std::vector<Row> rows;
   const bool by_hand = hand_noise_runs_here();
   if (by_hand) {
-    rows.push_back({"noise 3-D by hand, AVX-512", 1, 8, samples, 0, [&] { hand_noise(points.in(0), points.in(1), points.in(2), points.out(0), samples); }, {}});
-    rows.push_back({"noise 3-D by hand, AVX-512, two at a time", 1, 8, samples, 0, [&] { hand_noise_twice(points.in(0), points.in(1), points.in(2), points.out(0), samples); }, {}});
+    rows.push_back(
+        {"noise 3-D by hand, AVX-512",
+         1,
+         8,
+         samples,
+         0,
+         [&] { hand_noise(points.in(0), points.in(1), points.in(2), points.out(0), samples); },
+         {}});
+    rows.push_back({"noise 3-D by hand, AVX-512, two at a time",
+                    1,
+                    8,
+                    samples,
+                    0,
+                    [&] {
+                      hand_noise_twice(points.in(0), points.in(1), points.in(2), points.out(0),
+                                       samples);
+                    },
+                    {}});
     for (Row& row : rows) {
       row.run();
       check(row.name, scenes[0], points);
@@ -117,7 +139,8 @@ int run(int rounds) {
       row.name = scene.name + ", " + cpu.substr(7) + " x" + std::to_string(width);
       row.noises = scene.noises;
       row.repeat = scene.noises > 1 ? 2 : 8;
-      row.run = [&points, outputs = scene.split.module.outputs.size(), kernel = kernels.back().get()] {
+      row.run = [&points, outputs = scene.split.module.outputs.size(),
+                 kernel = kernels.back().get()] {
         FrameState state;
         state.uniforms.resize(3);
         RunStatus status;
@@ -141,7 +164,8 @@ int run(int rounds) {
   }
   // Noises per pixel: hyper's is what DESIGN.md counts.
   std::vector<std::unique_ptr<Picture>> pictures;
-  const auto add_picture = [&](const std::string& name, int size, double noises, int width, const Target& target) {
+  const auto add_picture = [&](const std::string& name, int size, double noises, int width,
+                               const Target& target) {
     const std::string cpu(target.name);
     pictures.push_back(std::make_unique<Picture>(name, size, width, cpu));
     Picture* picture = pictures.back().get();
@@ -154,12 +178,16 @@ int run(int rounds) {
     row.name = name + ".pse, " + cpu.substr(7) + " x" + std::to_string(width);
     row.noises = noises;
     row.count = picture->samples();
-    row.compile_ms = (picture->times().parse + picture->times().lower + picture->times().passes + picture->times().codegen) * 1000;
+    row.compile_ms = (picture->times().parse + picture->times().lower + picture->times().passes +
+                      picture->times().codegen) *
+                     1000;
     row.run = [picture] { picture->run(); };
     rows.push_back(std::move(row));
   };
   for (const Target& target : targets) {
-    if (!host_target() || &target > host_target() || !target.avx2 || (target.avx512 && !target.vbmi)) continue;
+    if (!host_target() || &target > host_target() || !target.avx2 ||
+        (target.avx512 && !target.vbmi))
+      continue;
     for (const int width : {target.width, 2 * target.width}) {
       if (width > target.width && !target.vbmi) continue;
       add_picture("fbm8", 1024, 8, width, target);
@@ -183,4 +211,6 @@ int run(int rounds) {
 }  // namespace
 }  // namespace pse::bench
 
-int main(int argc, char** argv) { return pse::bench::run(argc > 1 ? std::max(1, std::atoi(argv[1])) : 101); }
+int main(int argc, char** argv) {
+  return pse::bench::run(argc > 1 ? std::max(1, std::atoi(argv[1])) : 101);
+}

@@ -13,7 +13,8 @@
 namespace pse::bench {
 namespace {
 
-// Floats between the starts of planes: whole vectors, and no two planes at the same address modulo 4096.
+// Floats between the starts of planes: whole vectors, and no two planes at the same address modulo
+// 4096.
 constexpr std::size_t plane_stride = 64 * 64 + 48;
 
 std::string read_file(const std::string& path) {
@@ -44,7 +45,8 @@ Picture::Picture(const std::string& name, int size, int width, const std::string
   set_plane_uniforms(module, plane, state_);
   for (const Knob& knob : program_->knobs) {
     for (std::size_t i = 0; i < module.inputs.size(); ++i) {
-      if (knob.value.size() == 1 && module.inputs[i].name == knob.name) state_.uniforms[i] = knob.value[0];
+      if (knob.value.size() == 1 && module.inputs[i].name == knob.name)
+        state_.uniforms[i] = knob.value[0];
     }
   }
   RunStatus status;
@@ -59,8 +61,10 @@ Picture::Picture(const std::string& name, int size, int width, const std::string
       tile.inputs.resize(plane_stride * module.inputs.size());
       tile.outputs.resize(plane_stride * module.outputs.size());
       std::vector<float*> filled;
-      for (std::size_t i = 0; i < module.inputs.size(); ++i) filled.push_back(tile.inputs.data() + plane_stride * i);
-      for (std::size_t i = 0; i < module.outputs.size(); ++i) tile.out.push_back(tile.outputs.data() + plane_stride * i);
+      for (std::size_t i = 0; i < module.inputs.size(); ++i)
+        filled.push_back(tile.inputs.data() + plane_stride * i);
+      for (std::size_t i = 0; i < module.outputs.size(); ++i)
+        tile.out.push_back(tile.outputs.data() + plane_stride * i);
       tile.in.assign(filled.begin(), filled.end());
       source({{x, y, x + tile_size, y + tile_size}, tile_samples, filled});
     }
@@ -70,7 +74,8 @@ Picture::Picture(const std::string& name, int size, int width, const std::string
 void Picture::run() {
   RunStatus status;
   for (Tile& tile : tiles_) {
-    program_->kernel->run_samples(state_, status, scratch_, tile.in.data(), tile.out.data(), tile_samples);
+    program_->kernel->run_samples(state_, status, scratch_, tile.in.data(), tile.out.data(),
+                                  tile_samples);
   }
 }
 
@@ -89,7 +94,8 @@ bool Picture::agrees_with_interpreter() const {
     for (auto& result : results) out.push_back(result.data());
     interpreter->run_samples(state_, status, scratch, in.data(), out.data(), tile_size);
     for (std::size_t o = 0; o < results.size(); ++o) {
-      if (std::memcmp(results[o].data(), tile.out[o] + first, sizeof(float) * tile_size) != 0) return false;
+      if (std::memcmp(results[o].data(), tile.out[o] + first, sizeof(float) * tile_size) != 0)
+        return false;
     }
   }
   return true;

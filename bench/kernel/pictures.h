@@ -1,4 +1,5 @@
-// The scenes of gallery/measure as the user writes them: text -> kernel, run on tiles spread over the picture.
+// The scenes of gallery/measure as the user writes them: text -> kernel, run on tiles spread over
+// the picture.
 #pragma once
 
 #include <memory>
@@ -11,7 +12,8 @@ namespace pse::bench {
 
 class Picture {
  public:
-  // Compiles gallery/measure/NAME.pse at one width; ends the program with the errors where that fails.
+  // Compiles gallery/measure/NAME.pse at one width; ends the program with the errors where that
+  // fails.
   Picture(const std::string& name, int size, int width, const std::string& cpu);
 
   std::int64_t samples() const { return static_cast<std::int64_t>(tiles_.size()) * tile_samples; }

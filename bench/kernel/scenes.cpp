@@ -14,9 +14,11 @@ struct Writer {
   ir::Builder build;
   std::array<IrFloat, 3> point;
 
-  explicit Writer(const std::string& name, double noises) : scene{name, {}, noises, {}}, build{prepare(scene), scene.split.module.functions[0]} {
+  explicit Writer(const std::string& name, double noises)
+      : scene{name, {}, noises, {}}, build{prepare(scene), scene.split.module.functions[0]} {
     for (std::size_t i = 0; i < 3; ++i) {
-      scene.split.module.inputs.push_back({std::string("point.") + std::to_string(i), ir::Rate::sample});
+      scene.split.module.inputs.push_back(
+          {std::string("point.") + std::to_string(i), ir::Rate::sample});
       point[i] = IrFloat(build, build.emit(ir::Op::input, {}, static_cast<std::int32_t>(i)));
     }
     scene.split.first_slot = 3;
@@ -46,10 +48,13 @@ IrFloat octaves(Writer& w, int count, const F& f) {
   b.end_region();
   b.begin_region(body);
   const ir::Value n = b.add_param(body, ir::Type::i32);
-  const IrFloat frequency(b, b.add_param(body, ir::Type::f32)), sum(b, b.add_param(body, ir::Type::f32));
-  const IrFloat value = num::improved_noise<IrFloat, 3>({w.point[0] * frequency, w.point[1] * frequency, w.point[2] * frequency});
+  const IrFloat frequency(b, b.add_param(body, ir::Type::f32)),
+      sum(b, b.add_param(body, ir::Type::f32));
+  const IrFloat value = num::improved_noise<IrFloat, 3>(
+      {w.point[0] * frequency, w.point[1] * frequency, w.point[2] * frequency});
   const IrFloat next = sum + f(value) / frequency;
-  body.yields = {b.emit(ir::Op::iadd, {n, b.const_i32(1)}), (frequency * IrFloat(2.0f)).value, next.value};
+  body.yields = {b.emit(ir::Op::iadd, {n, b.const_i32(1)}), (frequency * IrFloat(2.0f)).value,
+                 next.value};
   b.end_region();
   const ir::Value initial[] = {b.const_i32(0), b.const_f32(1), b.const_f32(0)};
   return {b, b.emit_loop(initial, std::move(head), std::move(body))[2]};
@@ -61,7 +66,9 @@ IrFloat octaves_unrolled(Writer& w, int count, const F& f) {
   float frequency = 1;
   for (int k = 0; k < count; ++k, frequency *= 2) {
     const IrFloat scale(frequency);
-    const IrFloat value = f(num::improved_noise<IrFloat, 3>({w.point[0] * scale, w.point[1] * scale, w.point[2] * scale})) * IrFloat(1 / frequency);
+    const IrFloat value = f(num::improved_noise<IrFloat, 3>(
+                              {w.point[0] * scale, w.point[1] * scale, w.point[2] * scale})) *
+                          IrFloat(1 / frequency);
     sum = k == 0 ? value : sum + value;
   }
   return sum;
@@ -71,7 +78,8 @@ template <class F>
 float sum_of_octaves(int count, float x, float y, float z, const F& f) {
   float sum = 0, frequency = 1;
   for (int k = 0; k < count; ++k, frequency *= 2) {
-    sum += f(num::improved_noise<float, 3>({x * frequency, y * frequency, z * frequency})) / frequency;
+    sum +=
+        f(num::improved_noise<float, 3>({x * frequency, y * frequency, z * frequency})) / frequency;
   }
   return sum;
 }
@@ -85,7 +93,9 @@ const auto absolute = [](auto v) {
 Scene noise() {
   Writer w("noise 3-D", 1);
   w.output(num::improved_noise<IrFloat, 3>(w.point));
-  w.scene.expected = [](float x, float y, float z) { return num::improved_noise<float, 3>({x, y, z}); };
+  w.scene.expected = [](float x, float y, float z) {
+    return num::improved_noise<float, 3>({x, y, z});
+  };
   return std::move(w.scene);
 }
 
@@ -98,7 +108,9 @@ Scene gradient_noise() {
   for (std::size_t i = 0; i < 3; ++i) w.output(*result.slope[i]);
   w.scene.expected = [](float x, float y, float z) {
     using C = num::Dual<float, 3>;
-    return num::improved_noise<C, 3>({C::variable(x, 0), C::variable(y, 1), C::variable(z, 2)}).slope[0].value();
+    return num::improved_noise<C, 3>({C::variable(x, 0), C::variable(y, 1), C::variable(z, 2)})
+        .slope[0]
+        .value();
   };
   return std::move(w.scene);
 }
@@ -107,7 +119,9 @@ template <class F>
 Scene octave_scene(const std::string& name, int count, bool unrolled, const F& f) {
   Writer w(name, count);
   w.output(unrolled ? octaves_unrolled(w, count, f) : octaves(w, count, f));
-  w.scene.expected = [count, f](float x, float y, float z) { return sum_of_octaves(count, x, y, z, f); };
+  w.scene.expected = [count, f](float x, float y, float z) {
+    return sum_of_octaves(count, x, y, z, f);
+  };
   return std::move(w.scene);
 }
 

@@ -1,4 +1,5 @@
-// The programs whose speed is measured: the three scenes of DESIGN.md section 7 and the noises below them.
+// The programs whose speed is measured: the three scenes of DESIGN.md section 7 and the noises
+// below them.
 #pragma once
 
 #include <functional>

@@ -27,8 +27,9 @@ struct Hash128 {
   }
 };
 
-// Takes content in pieces. Two words of state, each mixed with every word of content by a multiplication of its own
-// and a rotation; the end is mixed until every bit of state reaches every bit of the result.
+// Takes content in pieces. Two words of state, each mixed with every word of content by a
+// multiplication of its own and a rotation; the end is mixed until every bit of state reaches every
+// bit of the result.
 class Hasher {
  public:
   void add_word(std::uint64_t word) {
@@ -52,10 +53,8 @@ class Hasher {
   void add(std::string_view text) { add_bytes(std::as_bytes(std::span(text))); }
 
   template <class T>
-    requires std::is_integral_v<T> || std::is_enum_v<T>
-  void add(T value) {
-    add_word(static_cast<std::uint64_t>(value));
-  }
+  requires std::is_integral_v<T> || std::is_enum_v<T>
+  void add(T value) { add_word(static_cast<std::uint64_t>(value)); }
   void add(float value) { add_word(std::bit_cast<std::uint32_t>(value)); }
 
   Hash128 finish() const {

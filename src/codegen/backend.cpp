@@ -14,7 +14,8 @@ constexpr const char* file_name = "libpse_llvm.so";
 // The folder of the program or shared library that this code was linked into.
 std::filesystem::path own_folder() {
   Dl_info found{};
-  if (dladdr(reinterpret_cast<const void*>(&backend_path), &found) == 0 || !found.dli_fname) return {};
+  if (dladdr(reinterpret_cast<const void*>(&backend_path), &found) == 0 || !found.dli_fname)
+    return {};
   std::error_code error;
   // For the main program dli_fname is argv[0], which need not be a path.
   std::filesystem::path file = found.dli_fname;
@@ -28,12 +29,15 @@ std::filesystem::path own_folder() {
 
 std::expected<BackendEntry, std::string> open_backend() {
   const std::filesystem::path path = backend_path();
-  if (path.empty()) return std::unexpected(std::string("the compiler module ") + file_name + " was not found");
+  if (path.empty())
+    return std::unexpected(std::string("the compiler module ") + file_name + " was not found");
   // Never closed: LLVM does not unload.
   void* handle = dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
-  if (!handle) return std::unexpected(std::string("the compiler module does not load: ") + dlerror());
+  if (!handle)
+    return std::unexpected(std::string("the compiler module does not load: ") + dlerror());
   const auto entry = reinterpret_cast<BackendEntry>(dlsym(handle, backend_symbol));
-  if (!entry) return std::unexpected("the compiler module " + path.string() + " is of another version");
+  if (!entry)
+    return std::unexpected("the compiler module " + path.string() + " is of another version");
   return entry;
 }
 
@@ -41,8 +45,8 @@ std::expected<BackendEntry, std::string> open_backend() {
 
 std::filesystem::path backend_path() {
   const std::filesystem::path folder = own_folder();
-  std::vector<std::filesystem::path> candidates = {folder / file_name, folder / ".." / "lib" / "pse" / file_name,
-                                                   folder / "pse" / file_name};
+  std::vector<std::filesystem::path> candidates = {
+      folder / file_name, folder / ".." / "lib" / "pse" / file_name, folder / "pse" / file_name};
 #ifdef PSE_LLVM_BUILT_AT
   candidates.emplace_back(PSE_LLVM_BUILT_AT);
 #endif

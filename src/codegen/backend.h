@@ -1,5 +1,6 @@
 // The door to LLVM: a shared module of its own, opened only when a kernel must really be compiled.
-// Start-up is a feature: a program whose kernel is cached never loads LLVM (docs/decisions/2026-11-22-kernels.md).
+// Start-up is a feature: a program whose kernel is cached never loads LLVM
+// (docs/decisions/2026-11-22-kernels.md).
 #pragma once
 
 #include <expected>
@@ -30,7 +31,8 @@ struct BackendReply {
 inline constexpr const char* backend_symbol = "pse_llvm_compile";
 using BackendEntry = void (*)(const BackendRequest*, BackendReply*);
 
-// The module's file, found beside the running program or library, in ../lib/pse, or where it was built.
+// The module's file, found beside the running program or library, in ../lib/pse, or where it was
+// built.
 std::filesystem::path backend_path();
 std::expected<std::string, std::string> run_backend(const BackendRequest& request);
 

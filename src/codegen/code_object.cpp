@@ -1,6 +1,7 @@
-// A small loader: places the sections of a relocatable object in one mapping, applies the relocations that
-// position-independent x86-64 code needs (System V ABI, AMD64 supplement, section 4.4), and makes it executable.
-// Every offset is checked: a damaged file is refused, never followed.
+// A small loader: places the sections of a relocatable object in one mapping, applies the
+// relocations that position-independent x86-64 code needs (System V ABI, AMD64 supplement,
+// section 4.4), and makes it executable. Every offset is checked: a damaged file is refused, never
+// followed.
 #include "codegen/code_object.h"
 
 #include <elf.h>
@@ -47,28 +48,33 @@ class Loader {
   bool read_headers() {
     Elf64_Ehdr header;
     if (!read(0, header) || std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0) return false;
-    if (header.e_ident[EI_CLASS] != ELFCLASS64 || header.e_type != ET_REL || header.e_machine != EM_X86_64) return false;
+    if (header.e_ident[EI_CLASS] != ELFCLASS64 || header.e_type != ET_REL ||
+        header.e_machine != EM_X86_64)
+      return false;
     for (std::size_t i = 0; i < header.e_shnum; ++i) {
       Elf64_Shdr section;
       if (!read(header.e_shoff + i * sizeof section, section)) return false;
-      if (section.sh_type != SHT_NOBITS && !inside(section.sh_offset, section.sh_size)) return false;
+      if (section.sh_type != SHT_NOBITS && !inside(section.sh_offset, section.sh_size))
+        return false;
       sections_.push_back(section);
     }
     return read_symbols();
   }
 
-  // Gives every section that is needed at run time its place, and one stub to every function of the host.
+  // Gives every section that is needed at run time its place, and one stub to every function of the
+  // host.
   bool lay_out() {
     std::size_t end = 0;
     for (const Elf64_Shdr& section : sections_) {
-      const bool needed = (section.sh_flags & SHF_ALLOC) != 0 && section.sh_type != SHT_X86_64_UNWIND &&
-                          section.sh_type != SHT_NOTE;
+      const bool needed = (section.sh_flags & SHF_ALLOC) != 0 &&
+                          section.sh_type != SHT_X86_64_UNWIND && section.sh_type != SHT_NOTE;
       if (!needed || section.sh_size == 0) {
         places_.push_back(no_place);
         continue;
       }
       const std::size_t align = section.sh_addralign > 64 ? section.sh_addralign : 64;
-      if ((section.sh_flags & SHF_WRITE) != 0 || align > 4096 || (align & (align - 1)) != 0) return false;
+      if ((section.sh_flags & SHF_WRITE) != 0 || align > 4096 || (align & (align - 1)) != 0)
+        return false;
       if (section.sh_size > limit) return false;
       end = (end + align - 1) & ~(align - 1);
       places_.push_back(end);
@@ -89,7 +95,8 @@ class Loader {
     }
     for (std::size_t i = 0; i < symbols_.size(); ++i) {
       if (symbols_[i].st_shndx != SHN_UNDEF) continue;
-      if (const void* function = host_function(name(i))) write_stub(memory + stubs_ + stub_size * i, function);
+      if (const void* function = host_function(name(i)))
+        write_stub(memory + stubs_ + stub_size * i, function);
     }
     for (const Elf64_Shdr& section : sections_) {
       if (section.sh_type == SHT_RELA && !relocate(section, memory)) return false;
@@ -98,10 +105,12 @@ class Loader {
     return true;
   }
 
-  void export_symbols(const std::byte* memory, std::unordered_map<std::string, const void*>& to) const {
+  void export_symbols(const std::byte* memory,
+                      std::unordered_map<std::string, const void*>& to) const {
     for (std::size_t i = 0; i < symbols_.size(); ++i) {
       std::size_t place;
-      if (ELF64_ST_BIND(symbols_[i].st_info) == STB_GLOBAL && symbols_[i].st_shndx != SHN_UNDEF && place_of(i, place)) {
+      if (ELF64_ST_BIND(symbols_[i].st_info) == STB_GLOBAL && symbols_[i].st_shndx != SHN_UNDEF &&
+          place_of(i, place)) {
         to.emplace(std::string(name(i)), memory + place);
       }
     }
@@ -127,7 +136,8 @@ class Loader {
       if (section.sh_link >= sections_.size()) return false;
       const Elf64_Shdr& strings = sections_[section.sh_link];
       names_ = {reinterpret_cast<const char*>(file_.data()) + strings.sh_offset, strings.sh_size};
-      for (std::uint64_t at = 0; at + sizeof(Elf64_Sym) <= section.sh_size; at += sizeof(Elf64_Sym)) {
+      for (std::uint64_t at = 0; at + sizeof(Elf64_Sym) <= section.sh_size;
+           at += sizeof(Elf64_Sym)) {
         Elf64_Sym symbol;
         if (!read(section.sh_offset + at, symbol)) return false;
         symbols_.push_back(symbol);
@@ -165,16 +175,19 @@ class Loader {
     for (std::uint64_t at = 0; at + sizeof(Elf64_Rela) <= table.sh_size; at += sizeof(Elf64_Rela)) {
       Elf64_Rela entry;
       std::size_t symbol;
-      if (!read(table.sh_offset + at, entry) || !place_of(ELF64_R_SYM(entry.r_info), symbol)) return false;
+      if (!read(table.sh_offset + at, entry) || !place_of(ELF64_R_SYM(entry.r_info), symbol))
+        return false;
       const auto type = ELF64_R_TYPE(entry.r_info);
       const std::size_t width = type == R_X86_64_64 ? 8 : 4;
       if (entry.r_offset > target_size || target_size - entry.r_offset < width) return false;
       std::byte* place = memory + target + entry.r_offset;
       if (type == R_X86_64_64) {
-        const std::uint64_t value = reinterpret_cast<std::uintptr_t>(memory + symbol) + static_cast<std::uint64_t>(entry.r_addend);
+        const std::uint64_t value = reinterpret_cast<std::uintptr_t>(memory + symbol) +
+                                    static_cast<std::uint64_t>(entry.r_addend);
         std::memcpy(place, &value, sizeof value);
       } else if (type == R_X86_64_PC32 || type == R_X86_64_PLT32) {
-        const std::int64_t value = static_cast<std::int64_t>(symbol) + entry.r_addend - static_cast<std::int64_t>(target + entry.r_offset);
+        const std::int64_t value = static_cast<std::int64_t>(symbol) + entry.r_addend -
+                                   static_cast<std::int64_t>(target + entry.r_offset);
         const auto narrow = static_cast<std::int32_t>(value);
         if (narrow != value) return false;
         std::memcpy(place, &narrow, sizeof narrow);
@@ -196,13 +209,17 @@ class Loader {
 }  // namespace
 
 std::expected<CodeObject, std::string> CodeObject::load(std::span<const std::byte> object) {
-  const auto refuse = [] { return std::unexpected(std::string("the compiled code cannot be loaded")); };
+  const auto refuse = [] {
+    return std::unexpected(std::string("the compiled code cannot be loaded"));
+  };
   Loader loader(object);
   if (!loader.read_headers() || !loader.lay_out()) return refuse();
   CodeObject code;
   code.size_ = loader.size();
-  void* pages = mmap(nullptr, code.size_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (pages == MAP_FAILED) return std::unexpected(std::string("there is no memory for compiled code"));
+  void* pages =
+      mmap(nullptr, code.size_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (pages == MAP_FAILED)
+    return std::unexpected(std::string("there is no memory for compiled code"));
   code.pages_ = pages;
   auto* memory = static_cast<std::byte*>(pages);
   if (!loader.fill(memory)) return refuse();

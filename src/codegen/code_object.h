@@ -1,5 +1,5 @@
-// Machine code in memory: a relocatable ELF object, fresh from LLVM or from the cache, made executable without LLVM.
-// The last step before a kernel runs.
+// Machine code in memory: a relocatable ELF object, fresh from LLVM or from the cache, made
+// executable without LLVM. The last step before a kernel runs.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,8 @@ namespace pse {
 // Owns the pages. The code can be called as long as this lives.
 class CodeObject {
  public:
-  // Takes x86-64 relocatable objects whose only undefined symbols are the few functions of code_object.cpp's list.
+  // Takes x86-64 relocatable objects whose only undefined symbols are the few functions of
+  // code_object.cpp's list.
   static std::expected<CodeObject, std::string> load(std::span<const std::byte> object);
 
   CodeObject(CodeObject&& other) noexcept;

@@ -13,8 +13,9 @@
 namespace pse {
 namespace {
 
-// With all tables in registers a small program runs up to a third faster when two vectors overlap; it takes twice as
-// long to compile, so a large one does not. docs/decisions/2026-11-22-kernels.md has the numbers.
+// With all tables in registers a small program runs up to a third faster when two vectors overlap;
+// it takes twice as long to compile, so a large one does not. docs/decisions/2026-11-22-kernels.md
+// has the numbers.
 int best_width(const ir::Module& module, const Target& target) {
   constexpr std::size_t small = 320;
   return target.vbmi && ir::count_instructions(module) <= small ? 2 * target.width : target.width;
@@ -24,14 +25,16 @@ std::expected<BackendRequest, std::string> make_request(const passes::SplitModul
                                                         const CodegenOptions& options) {
   const Target* target = find_target(options.cpu);
   if (!target) {
-    if (options.cpu.empty()) return std::unexpected(std::string("compiled code needs a processor with SSE 4.2"));
+    if (options.cpu.empty())
+      return std::unexpected(std::string("compiled code needs a processor with SSE 4.2"));
     std::string known;
     for (const Target& t : targets) known += (known.empty() ? "" : ", ") + std::string(t.name);
     return std::unexpected("there is no processor level '" + options.cpu + "'; known are " + known);
   }
   const int width = options.width == 0 ? best_width(split.module, *target) : options.width;
   if (width != 1 && width != 4 && width != 8 && width != 16 && width != 32) {
-    return std::unexpected("a vector cannot have " + std::to_string(width) + " samples; 1, 4, 8, 16 and 32 are possible");
+    return std::unexpected("a vector cannot have " + std::to_string(width) +
+                           " samples; 1, 4, 8, 16 and 32 are possible");
   }
   BackendRequest request;
   request.split = &split;
@@ -71,7 +74,8 @@ std::expected<std::unique_ptr<Kernel>, std::string> compile_kernel(const passes:
   const auto request = make_request(split, options);
   if (!request) return std::unexpected(request.error());
   if (request->target > host_target()) {
-    return std::unexpected("this processor cannot run code for " + std::string(request->target->name));
+    return std::unexpected("this processor cannot run code for " +
+                           std::string(request->target->name));
   }
   const KernelCache cache(options.cache);
   const Hash128 key = options.cache.empty() ? Hash128{} : key_of(*request);
@@ -87,7 +91,8 @@ std::expected<std::unique_ptr<Kernel>, std::string> compile_kernel(const passes:
     cache.keep(key, *object);
   }
   if (stats) {
-    stats->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    stats->seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     stats->from_cache = from_cache;
     stats->width = request->width;
     stats->cpu = request->target->name;
@@ -95,7 +100,8 @@ std::expected<std::unique_ptr<Kernel>, std::string> compile_kernel(const passes:
   return kernel;
 }
 
-std::expected<std::string, std::string> emit_listing(const passes::SplitModule& split, const CodegenOptions& options,
+std::expected<std::string, std::string> emit_listing(const passes::SplitModule& split,
+                                                     const CodegenOptions& options,
                                                      Listing listing) {
   auto request = make_request(split, options);
   if (!request) return std::unexpected(request.error());

@@ -22,7 +22,8 @@ float* aligned(float* memory) {
 
 }  // namespace
 
-std::unique_ptr<CompiledKernel> CompiledKernel::make(const passes::SplitModule& split, CodeObject code, int width) {
+std::unique_ptr<CompiledKernel> CompiledKernel::make(const passes::SplitModule& split,
+                                                     CodeObject code, int width) {
   std::unique_ptr<CompiledKernel> kernel(new CompiledKernel(split, std::move(code), width));
   return kernel->samples_ && kernel->frame_ ? std::move(kernel) : nullptr;
 }
@@ -35,8 +36,10 @@ CompiledKernel::CompiledKernel(const passes::SplitModule& split, CodeObject code
       first_slot_(split.first_slot),
       frame_layout_(split.module.main().arrays),
       sample_layout_(split.module.main().arrays, width) {
-  for (const ir::Input& input : split.module.inputs) is_sample_input_.push_back(input.rate == ir::Rate::sample);
-  for (const ir::Array& array : split.module.main().arrays) initial_lengths_.push_back(array.initial_length);
+  for (const ir::Input& input : split.module.inputs)
+    is_sample_input_.push_back(input.rate == ir::Rate::sample);
+  for (const ir::Array& array : split.module.main().arrays)
+    initial_lengths_.push_back(array.initial_length);
   samples_ = reinterpret_cast<KernelEntry>(const_cast<void*>(code_.find(samples_symbol)));
   frame_ = reinterpret_cast<KernelEntry>(const_cast<void*>(code_.find(frame_symbol)));
 }
@@ -61,7 +64,8 @@ void CompiledKernel::run_frame(FrameState& state, RunStatus& status) const {
 }
 
 void CompiledKernel::run_samples(const FrameState& state, RunStatus& status, Scratch& scratch,
-                                 const float* const* inputs, float* const* outputs, std::int64_t count) const {
+                                 const float* const* inputs, float* const* outputs,
+                                 std::int64_t count) const {
   // Scratch: the arrays of a vector of samples, then buffers for the last, partly filled vector.
   const auto width = static_cast<std::size_t>(width_);
   const auto arrays = static_cast<std::size_t>(sample_layout_.size);
@@ -86,15 +90,17 @@ void CompiledKernel::run_samples(const FrameState& state, RunStatus& status, Scr
   }
 }
 
-// The last vector repeats the last sample in its spare lanes: they do only what a real lane does as well.
-void CompiledKernel::run_tail(KernelCall call, RunStatus& status, float* buffers, std::int64_t first,
-                              std::int64_t count) const {
+// The last vector repeats the last sample in its spare lanes: they do only what a real lane does as
+// well.
+void CompiledKernel::run_tail(KernelCall call, RunStatus& status, float* buffers,
+                              std::int64_t first, std::int64_t count) const {
   std::vector<const float*> inputs(is_sample_input_.size());
   std::vector<float*> outputs(output_count_);
   float* next = buffers;
   for (std::size_t i = 0; i < inputs.size(); ++i, next += width_) {
     if (!is_sample_input_[i] || !call.inputs[i]) continue;
-    for (std::int64_t lane = 0; lane < width_; ++lane) next[lane] = call.inputs[i][first + std::min(lane, count - 1)];
+    for (std::int64_t lane = 0; lane < width_; ++lane)
+      next[lane] = call.inputs[i][first + std::min(lane, count - 1)];
     inputs[i] = next;
   }
   for (std::size_t i = 0; i < outputs.size(); ++i, next += width_) outputs[i] = next;
@@ -104,7 +110,8 @@ void CompiledKernel::run_tail(KernelCall call, RunStatus& status, float* buffers
   call.count = width_;
   samples_(&call);
   report(call, status, first);
-  for (std::size_t i = 0; i < outputs.size(); ++i) std::copy_n(outputs[i], count, wanted[i] + first);
+  for (std::size_t i = 0; i < outputs.size(); ++i)
+    std::copy_n(outputs[i], count, wanted[i] + first);
 }
 
 }  // namespace pse

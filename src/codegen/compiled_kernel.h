@@ -14,16 +14,19 @@ namespace pse {
 class CompiledKernel final : public Kernel {
  public:
   // Null where the object lacks an entry point.
-  static std::unique_ptr<CompiledKernel> make(const passes::SplitModule& split, CodeObject code, int width);
+  static std::unique_ptr<CompiledKernel> make(const passes::SplitModule& split, CodeObject code,
+                                              int width);
 
   int width() const override { return width_; }
   void run_frame(FrameState& state, RunStatus& status) const override;
-  void run_samples(const FrameState& state, RunStatus& status, Scratch& scratch, const float* const* inputs,
-                   float* const* outputs, std::int64_t count) const override;
+  void run_samples(const FrameState& state, RunStatus& status, Scratch& scratch,
+                   const float* const* inputs, float* const* outputs,
+                   std::int64_t count) const override;
 
  private:
   CompiledKernel(const passes::SplitModule& split, CodeObject code, int width);
-  void run_tail(KernelCall call, RunStatus& status, float* buffers, std::int64_t first, std::int64_t count) const;
+  void run_tail(KernelCall call, RunStatus& status, float* buffers, std::int64_t first,
+                std::int64_t count) const;
 
   CodeObject code_;
   int width_;

@@ -1,5 +1,6 @@
-// The kernel's calling convention: what compiled programs look like to whoever runs them. No LLVM here.
-// Fifth stage of the flow: a SplitModule becomes a Kernel; stream/ runs it over batches of samples.
+// The kernel's calling convention: what compiled programs look like to whoever runs them. No LLVM
+// here. Fifth stage of the flow: a SplitModule becomes a Kernel; stream/ runs it over batches of
+// samples.
 #pragma once
 
 #include <atomic>
@@ -14,17 +15,20 @@
 
 namespace pse {
 
-// A function of the host, called for `count` samples at once: argument a of sample i is arguments[a][i], likewise
-// results. It must be pure and thread-safe, and must treat samples independently.
+// A function of the host, called for `count` samples at once: argument a of sample i is
+// arguments[a][i], likewise results. It must be pure and thread-safe, and must treat samples
+// independently.
 struct ExternalFunction {
-  void (*call)(void* user, std::int64_t count, const float* const* arguments, float* const* results) = nullptr;
+  void (*call)(void* user, std::int64_t count, const float* const* arguments,
+               float* const* results) = nullptr;
   void* user = nullptr;
 };
 
 // What is constant while a frame is computed. One per run, shared by all threads.
 struct FrameState {
-  std::vector<float> uniforms;   // one float per Module::inputs entry; those of rate sample are unused
-  std::vector<float> arrays;     // arrays of rate frame, laid out by ArrayLayout
+  std::vector<float>
+      uniforms;               // one float per Module::inputs entry; those of rate sample are unused
+  std::vector<float> arrays;  // arrays of rate frame, laid out by ArrayLayout
   std::vector<std::int32_t> array_lengths;  // one per Array
   std::vector<ExternalFunction> externals;  // one per Module::externals
 };
@@ -46,22 +50,25 @@ class Kernel {
  public:
   virtual ~Kernel() = default;
   virtual int width() const = 0;
-  // Runs the frame function: fills the slots at the end of state.uniforms and the arrays of rate frame.
-  // state.uniforms[0 .. first_slot) and externals must be set.
+  // Runs the frame function: fills the slots at the end of state.uniforms and the arrays of rate
+  // frame. state.uniforms[0 .. first_slot) and externals must be set.
   virtual void run_frame(FrameState& state, RunStatus& status) const = 0;
-  // Runs the program on samples [0, count). inputs[i] is the array of Module::inputs[i] (null if its rate is not sample),
-  // outputs[o] that of Module::outputs[o]. All arrays hold a multiple of 16 floats, so that whole vectors may be read
-  // and written; what is written past `count` has no meaning. NaN is stored as 0x7fc00000.
-  virtual void run_samples(const FrameState& state, RunStatus& status, Scratch& scratch, const float* const* inputs,
-                           float* const* outputs, std::int64_t count) const = 0;
+  // Runs the program on samples [0, count). inputs[i] is the array of Module::inputs[i] (null if
+  // its rate is not sample), outputs[o] that of Module::outputs[o]. All arrays hold a multiple of
+  // 16 floats, so that whole vectors may be read and written; what is written past `count` has no
+  // meaning. NaN is stored as 0x7fc00000.
+  virtual void run_samples(const FrameState& state, RunStatus& status, Scratch& scratch,
+                           const float* const* inputs, float* const* outputs,
+                           std::int64_t count) const = 0;
 };
 
-// The IR interpreter behind the same interface (width 1): the meaning that every kernel is tested against.
+// The IR interpreter behind the same interface (width 1): the meaning that every kernel is tested
+// against.
 std::unique_ptr<Kernel> make_interpreted_kernel(std::shared_ptr<const passes::SplitModule> split);
 
 struct CodegenOptions {
-  int width = 0;            // 1, 4, 8, 16, 32; 0: what this processor does best with this program
-  std::string cpu;          // a name of codegen/target.h; empty: this processor
+  int width = 0;    // 1, 4, 8, 16, 32; 0: what this processor does best with this program
+  std::string cpu;  // a name of codegen/target.h; empty: this processor
   bool optimize = true;
   std::filesystem::path cache;  // folder of compiled kernels by content; empty: none
 };
@@ -80,7 +87,8 @@ std::expected<std::unique_ptr<Kernel>, std::string> compile_kernel(const passes:
 
 // `--emit llvm` and `--emit asm`.
 enum class Listing { llvm, assembly };
-std::expected<std::string, std::string> emit_listing(const passes::SplitModule& split, const CodegenOptions& options,
+std::expected<std::string, std::string> emit_listing(const passes::SplitModule& split,
+                                                     const CodegenOptions& options,
                                                      Listing listing);
 
 }  // namespace pse

@@ -1,5 +1,6 @@
-// One file per kernel: a line that says what it is, the hash of what follows, the object. Written under a name of its
-// own and renamed, so a reader sees a whole file or none. The time of last use is the file's time; the oldest go first.
+// One file per kernel: a line that says what it is, the hash of what follows, the object. Written
+// under a name of its own and renamed, so a reader sees a whole file or none. The time of last use
+// is the file's time; the oldest go first.
 #include "codegen/kernel_cache.h"
 
 #include <unistd.h>
@@ -27,7 +28,9 @@ std::string digest(std::string_view object) {
 
 }  // namespace
 
-fs::path KernelCache::path_of(const Hash128& key) const { return folder_ / (key.text() + std::string(extension)); }
+fs::path KernelCache::path_of(const Hash128& key) const {
+  return folder_ / (key.text() + std::string(extension));
+}
 
 std::optional<std::string> KernelCache::find(const Hash128& key) const {
   if (folder_.empty()) return std::nullopt;
@@ -86,7 +89,8 @@ void KernelCache::make_room() const {
     if (gone) continue;
     // What a killed process left behind.
     const bool unfinished = it->path().extension() != extension;
-    if (unfinished && fs::file_time_type::clock::now() - entry.used < std::chrono::hours(1)) continue;
+    if (unfinished && fs::file_time_type::clock::now() - entry.used < std::chrono::hours(1))
+      continue;
     total += entry.size;
     entries.push_back(entry);
   }

@@ -1,5 +1,5 @@
-// Compiled kernels on disk, by content. Many processes may use one folder at once; a damaged entry counts as absent.
-// Between compile.cpp and the file system.
+// Compiled kernels on disk, by content. Many processes may use one folder at once; a damaged entry
+// counts as absent. Between compile.cpp and the file system.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
-// What the compiled code is given: one struct by pointer, whose field order the emitter knows (llvm/call_fields.h).
-// Between stream/ and the machine code: compiled_kernel.cpp fills it, the code reads it.
+// What the compiled code is given: one struct by pointer, whose field order the emitter knows
+// (llvm/call_fields.h). Between stream/ and the machine code: compiled_kernel.cpp fills it, the
+// code reads it.
 #pragma once
 
 #include <cstddef>
@@ -10,13 +11,16 @@
 namespace pse {
 
 struct KernelCall {
-  const float* const* inputs = nullptr;   // one array per Module::inputs entry, null unless of rate sample
-  float* const* outputs = nullptr;        // samples: one array per output; frame: outputs[0] is the array of slots
-  std::int64_t count = 0;                 // samples; a multiple of the width
-  const float* uniforms = nullptr;        // FrameState::uniforms
-  float* frame_arrays = nullptr;          // laid out by FrameArrayLayout; written by the frame function only
+  const float* const* inputs =
+      nullptr;  // one array per Module::inputs entry, null unless of rate sample
+  float* const* outputs =
+      nullptr;             // samples: one array per output; frame: outputs[0] is the array of slots
+  std::int64_t count = 0;  // samples; a multiple of the width
+  const float* uniforms = nullptr;  // FrameState::uniforms
+  float* frame_arrays =
+      nullptr;  // laid out by FrameArrayLayout; written by the frame function only
   std::int32_t* frame_lengths = nullptr;  // one per Array
-  float* scratch = nullptr;               // sample-rate arrays, laid out by SampleArrayLayout; 64-byte aligned
+  float* scratch = nullptr;  // sample-rate arrays, laid out by SampleArrayLayout; 64-byte aligned
   const std::atomic<bool>* cancel = nullptr;
   const ExternalFunction* externals = nullptr;
   // Out: where a check failed, or -1. Written before the code returns early.
@@ -24,7 +28,8 @@ struct KernelCall {
   std::int64_t failed_sample = 0;
 };
 
-// Both functions of a compiled module have this type. They return early when cancelled or when a check fails.
+// Both functions of a compiled module have this type. They return early when cancelled or when a
+// check fails.
 using KernelEntry = void (*)(KernelCall*);
 inline constexpr const char* samples_symbol = "pse_samples";
 inline constexpr const char* frame_symbol = "pse_frame";

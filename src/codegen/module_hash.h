@@ -1,5 +1,5 @@
-// The content of a program as a hash: what decides the machine code, and nothing else (no names, no places in text).
-// The cache's key.
+// The content of a program as a hash: what decides the machine code, and nothing else (no names, no
+// places in text). The cache's key.
 #pragma once
 
 #include "base/hash.h"

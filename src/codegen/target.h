@@ -1,5 +1,6 @@
-// The processors that kernels are compiled for: a few levels of the x86-64 instruction set, told apart without LLVM.
-// A level, not a model: a cached kernel serves every machine of its level, and all levels give the same bits.
+// The processors that kernels are compiled for: a few levels of the x86-64 instruction set, told
+// apart without LLVM. A level, not a model: a cached kernel serves every machine of its level, and
+// all levels give the same bits.
 #pragma once
 
 #include <array>

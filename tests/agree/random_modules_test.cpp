@@ -1,6 +1,7 @@
-// The promise of DESIGN.md section 4: compiled code gives the interpreter's bits, NaN included, at every width and on
-// every processor level. Random modules over all operators, as written and after the passes.
-// PSE_AGREE_SEEDS=n in the environment tries n modules on all machines instead of the usual sample.
+// The promise of DESIGN.md section 4: compiled code gives the interpreter's bits, NaN included, at
+// every width and on every processor level. Random modules over all operators, as written and after
+// the passes. PSE_AGREE_SEEDS=n in the environment tries n modules on all machines instead of the
+// usual sample.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -21,7 +22,8 @@ struct Result {
 };
 
 // What test::random_externals does, as the host of a kernel does it.
-void call_external(void* user, std::int64_t count, const float* const* arguments, float* const* results) {
+void call_external(void* user, std::int64_t count, const float* const* arguments,
+                   float* const* results) {
   const bool first = user == nullptr;
   for (std::int64_t s = 0; s < count; ++s) {
     if (first) {
@@ -58,7 +60,8 @@ Result run(const Kernel& kernel, const passes::SplitModule& split, std::uint64_t
   RunStatus status;
   Scratch scratch;
   kernel.run_frame(state, status);
-  if (status.failed_check < 0) kernel.run_samples(state, status, scratch, inputs.data(), outputs.data(), samples);
+  if (status.failed_check < 0)
+    kernel.run_samples(state, status, scratch, inputs.data(), outputs.data(), samples);
   result.failed_check = status.failed_check;
   result.failed_sample = status.failed_sample;
   return result;
@@ -78,7 +81,8 @@ std::vector<Machine> machines() {
   return result;
 }
 
-void compare(const passes::SplitModule& split, const Machine& machine, bool optimize, std::uint64_t seed) {
+void compare(const passes::SplitModule& split, const Machine& machine, bool optimize,
+             std::uint64_t seed) {
   CodegenOptions options;
   options.cpu = machine.cpu;
   options.width = machine.width;
@@ -86,8 +90,10 @@ void compare(const passes::SplitModule& split, const Machine& machine, bool opti
   const auto kernel = compile_kernel(split, options);
   ASSERT_TRUE(kernel) << kernel.error();
   const auto shared = std::make_shared<const passes::SplitModule>(split);
-  const Result expected = run(*make_interpreted_kernel(shared), split, seed), found = run(**kernel, split, seed);
-  const std::string where = "seed " + std::to_string(seed) + " on " + machine.cpu + " x" + std::to_string(machine.width);
+  const Result expected = run(*make_interpreted_kernel(shared), split, seed),
+               found = run(**kernel, split, seed);
+  const std::string where =
+      "seed " + std::to_string(seed) + " on " + machine.cpu + " x" + std::to_string(machine.width);
   if (expected.failed_check >= 0 || found.failed_check >= 0) {
     // Which of several failing checks is met first depends on how many samples run side by side.
     EXPECT_EQ(expected.failed_check >= 0, found.failed_check >= 0) << where;
@@ -102,7 +108,8 @@ void compare(const passes::SplitModule& split, const Machine& machine, bool opti
       const auto a = std::bit_cast<std::uint32_t>(expected.outputs[o][s]);
       const auto b = std::bit_cast<std::uint32_t>(found.outputs[o][s]);
       if (a == b) continue;
-      ADD_FAILURE() << where << ": output " << o << " of sample " << s << " is " << std::hex << b << ", not " << a;
+      ADD_FAILURE() << where << ": output " << o << " of sample " << s << " is " << std::hex << b
+                    << ", not " << a;
       return;
     }
   }

@@ -1,4 +1,5 @@
-// Compiled kernels on disk: found again, never trusted when damaged, bounded in size; the loader refuses damaged objects.
+// Compiled kernels on disk: found again, never trusted when damaged, bounded in size; the loader
+// refuses damaged objects.
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -17,7 +18,10 @@ using ir::Op;
 
 class Folder {
  public:
-  explicit Folder(const std::string& name) : path(fs::path(::testing::TempDir()) / ("pse_cache_" + name)) { fs::remove_all(path); }
+  explicit Folder(const std::string& name)
+      : path(fs::path(::testing::TempDir()) / ("pse_cache_" + name)) {
+    fs::remove_all(path);
+  }
   ~Folder() { fs::remove_all(path); }
   fs::path path;
 };
@@ -29,7 +33,8 @@ void emit_sum(TestProgram& program, float add) {
 }
 
 // Compiles with a cache, checks what it computes, and says whether it came from the cache.
-bool compile_and_run(const TestProgram& program, const fs::path& folder, float expected, int width = 0) {
+bool compile_and_run(const TestProgram& program, const fs::path& folder, float expected,
+                     int width = 0) {
   CodegenOptions options;
   options.cache = folder;
   options.width = width;
@@ -83,8 +88,11 @@ TEST(Cache, ADamagedEntryIsCompiledAgain) {
     text << std::ifstream(entry, std::ios::binary).rdbuf();
     good = text.str();
   }
-  const auto write = [&](const std::string& content) { std::ofstream(entry, std::ios::binary) << content; };
-  for (const std::size_t length : {std::size_t{0}, std::size_t{5}, good.size() / 2, good.size() - 1}) {
+  const auto write = [&](const std::string& content) {
+    std::ofstream(entry, std::ios::binary) << content;
+  };
+  for (const std::size_t length :
+       {std::size_t{0}, std::size_t{5}, good.size() / 2, good.size() - 1}) {
     write(good.substr(0, length));
     EXPECT_FALSE(compile_and_run(program, folder.path, 7)) << length;
   }
@@ -122,7 +130,8 @@ TEST(Cache, TheLeastRecentlyUsedGoFirst) {
   const auto now = fs::file_time_type::clock::now();
   for (std::uint64_t i = 0; i < 3; ++i) {
     cache.keep({0, i}, object);
-    fs::last_write_time(folder.path / (Hash128{0, i}.text() + ".kernel"), now - std::chrono::hours(10 - i));
+    fs::last_write_time(folder.path / (Hash128{0, i}.text() + ".kernel"),
+                        now - std::chrono::hours(10 - i));
   }
   EXPECT_TRUE(cache.find({0, 0}));  // now the most recent
   cache.keep({0, 3}, object);
@@ -150,7 +159,8 @@ TEST(Options, SmallProgramsOverlapTwoVectors) {
     options.cpu = "x86-64-v4-vbmi";
     const auto text = emit_listing(program.split, options, Listing::llvm);
     ASSERT_TRUE(text);
-    EXPECT_NE(text->find(additions == 10 ? "fadd <32 x float>" : "fadd <16 x float>"), std::string::npos);
+    EXPECT_NE(text->find(additions == 10 ? "fadd <32 x float>" : "fadd <16 x float>"),
+              std::string::npos);
   }
 }
 
@@ -162,7 +172,9 @@ TEST(CodeObject, DamagedObjectsAreHandled) {
   compile_and_run(program, folder.path, 7);
   std::ostringstream text;
   text << std::ifstream(fs::directory_iterator(folder.path)->path(), std::ios::binary).rdbuf();
-  const std::string object = text.str().substr(text.str().find("\x7f" "ELF"));
+  const std::string object =
+      text.str().substr(text.str().find("\x7f"
+                                        "ELF"));
   ASSERT_TRUE(CodeObject::load(std::as_bytes(std::span(object))));
   for (std::size_t at = 0; at < object.size(); ++at) {
     for (const int flip : {1, 0x80, 0xff}) {
@@ -181,10 +193,12 @@ TEST(Options, MistakesAreSaidInASentence) {
   emit_sum(program, 5);
   CodegenOptions width;
   width.width = 3;
-  EXPECT_EQ(compile_kernel(program.split, width).error(), "a vector cannot have 3 samples; 1, 4, 8, 16 and 32 are possible");
+  EXPECT_EQ(compile_kernel(program.split, width).error(),
+            "a vector cannot have 3 samples; 1, 4, 8, 16 and 32 are possible");
   CodegenOptions cpu;
   cpu.cpu = "z80";
-  EXPECT_NE(compile_kernel(program.split, cpu).error().find("known are x86-64-v2, x86-64-v3"), std::string::npos);
+  EXPECT_NE(compile_kernel(program.split, cpu).error().find("known are x86-64-v2, x86-64-v3"),
+            std::string::npos);
 }
 
 TEST(Options, Listings) {

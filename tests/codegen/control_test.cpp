@@ -1,4 +1,5 @@
-// if and loop: uniform and varying conditions, nesting, results kept by samples that have finished, cancellation.
+// if and loop: uniform and varying conditions, nesting, results kept by samples that have finished,
+// cancellation.
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -55,7 +56,8 @@ TEST_P(Control, UniformIfBranches) {
   }
 }
 
-// How often x can be halved before it falls below 1, and what is left; each sample turns as often as it needs.
+// How often x can be halved before it falls below 1, and what is left; each sample turns as often
+// as it needs.
 void emit_halving(TestProgram& program) {
   ir::Builder& b = program.build;
   const ir::Value x = program.input();
@@ -79,18 +81,24 @@ void emit_halving(TestProgram& program) {
 TEST_P(Control, VaryingLoopKeepsWhatEachSampleLeftWith) {
   TestProgram program;
   emit_halving(program);
-  const std::vector<float> x = {1, 0.5f, 2, 3, 1024, 0, -5, from_bits(nan_bits), 7, 8, 0x1p100f, 0.75f, 1, 1, 1, 4095, 6, 2};
-  const std::vector<float> left = {0.5f, 0.5f, 0.5f, 0.75f, 0.5f, 0, -5, 0, 0.875f, 0.5f, 0.5f, 0.75f, 0.5f, 0.5f, 0.5f, 4095.0f / 4096, 0.75f, 0.5f};
+  const std::vector<float> x = {1,     0.5f, 2, 3, 1024, 0, -5, from_bits(nan_bits), 7, 8, 0x1p100f,
+                                0.75f, 1,    1, 1, 4095, 6, 2};
+  const std::vector<float> left = {0.5f, 0.5f, 0.5f,   0.75f,          0.5f,  0,
+                                   -5,   0,    0.875f, 0.5f,           0.5f,  0.75f,
+                                   0.5f, 0.5f, 0.5f,   4095.0f / 4096, 0.75f, 0.5f};
   const std::vector<float> turns = {1, 0, 2, 2, 11, 0, 0, 0, 3, 4, 101, 0, 1, 1, 1, 12, 3, 2};
   const Columns out = run(program, GetParam(), {x}, 18);
   for (std::size_t i = 0; i < 18; ++i) {
-    if (i == 7) EXPECT_EQ(bits(out[0][i]), nan_bits);
-    else EXPECT_EQ(out[0][i], left[i]) << i;
+    if (i == 7)
+      EXPECT_EQ(bits(out[0][i]), nan_bits);
+    else
+      EXPECT_EQ(out[0][i], left[i]) << i;
     EXPECT_EQ(out[1][i], turns[i]) << i;
   }
 }
 
-// sum over i < rows(sample) of sum over j <= i of (j if the sample is odd, else 1): a varying if in two varying loops.
+// sum over i < rows(sample) of sum over j <= i of (j if the sample is odd, else 1): a varying if in
+// two varying loops.
 TEST_P(Control, NestedVaryingLoopsAndIf) {
   TestProgram program;
   ir::Builder& b = program.build;
@@ -113,7 +121,8 @@ TEST_P(Control, NestedVaryingLoopsAndIf) {
     inner_head.yields = {b.emit(Op::ile, {j0, i})};
     b.end_region();
     b.begin_region(inner_body);
-    const ir::Value j = b.add_param(inner_body, ir::Type::i32), s = b.add_param(inner_body, ir::Type::i32);
+    const ir::Value j = b.add_param(inner_body, ir::Type::i32),
+                    s = b.add_param(inner_body, ir::Type::i32);
     ir::Region yes, no;
     b.begin_region(yes);
     yes.yields = {b.emit(Op::iadd, {s, j})};
@@ -175,7 +184,8 @@ TEST_P(Control, EveryTailLengthGivesTheSameSamples) {
   ASSERT_TRUE(kernel);
   for (int count = 0; count <= 40; ++count) {
     Runner once;
-    const Columns some = once(*kernel, program.split.module, {0}, {{x.begin(), x.begin() + count}}, count);
+    const Columns some =
+        once(*kernel, program.split.module, {0}, {{x.begin(), x.begin() + count}}, count);
     for (int i = 0; i < count; ++i) {
       EXPECT_EQ(some[0][i], all[0][i]);
       EXPECT_EQ(some[1][i], all[1][i]);
@@ -225,7 +235,8 @@ TEST_P(Control, CallsRunUnderTheirCallersMask) {
     // while v < 100: v = v * v; endless for v in [0, 1]
     ir::Function& function = module.functions[2];
     ir::Builder b(module, function);
-    const ir::Value x = b.add_param(function.body, ir::Type::f32), step = b.add_param(function.body, ir::Type::f32);
+    const ir::Value x = b.add_param(function.body, ir::Type::f32),
+                    step = b.add_param(function.body, ir::Type::f32);
     ir::Region head, body;
     b.begin_region(head);
     const ir::Value h = b.add_param(head, ir::Type::f32);
@@ -236,7 +247,8 @@ TEST_P(Control, CallsRunUnderTheirCallersMask) {
     body.yields = {b.emit(Op::fmul, {v, v})};
     b.end_region();
     const ir::Value end = b.emit_loop({{x}}, std::move(head), std::move(body))[0];
-    function.body.yields = {end, b.emit(Op::fadd, {end, step}), b.emit(Op::flt, {x, b.const_f32(3)})};
+    function.body.yields = {end, b.emit(Op::fadd, {end, step}),
+                            b.emit(Op::flt, {x, b.const_f32(3)})};
   }
   ir::Builder& b = program.build;
   const ir::Value x = program.input(), uniform = program.input(ir::Rate::frame);
@@ -250,7 +262,8 @@ TEST_P(Control, CallsRunUnderTheirCallersMask) {
   b.begin_region(no);
   no.yields = {b.const_f32(-1), b.const_f32(-2), b.const_bool(false)};
   b.end_region();
-  const auto results = b.emit_if(b.emit(Op::flt, {b.const_f32(1), x}), std::move(yes), std::move(no));
+  const auto results =
+      b.emit_if(b.emit(Op::flt, {b.const_f32(1), x}), std::move(yes), std::move(no));
   program.output(results[0]);
   program.output(results[1]);
   program.output_bool(results[2]);

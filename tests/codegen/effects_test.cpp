@@ -100,7 +100,8 @@ TEST_P(Effect, ExternalsTakeAndGiveWholeVectors) {
   const ir::Value x = program.input(), k = program.input(ir::Rate::frame);
   const ir::Type types[] = {ir::Type::f32, ir::Type::f32, ir::Type::f32};
   const ir::Value arguments[] = {x, k}, same[] = {k, k};
-  for (const ir::Value value : b.emit_multi(Op::external, arguments, types, 1)) program.output(value);
+  for (const ir::Value value : b.emit_multi(Op::external, arguments, types, 1))
+    program.output(value);
   program.output(b.emit_multi(Op::external, same, types, 1)[1]);
   program.finish();
   const auto kernel = compile(program, GetParam());

@@ -1,5 +1,5 @@
-// What the tests of compiled kernels share: a module under construction, and running it at every width and on every
-// processor level that this machine has.
+// What the tests of compiled kernels share: a module under construction, and running it at every
+// width and on every processor level that this machine has.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -46,9 +46,11 @@ struct TestProgram {
     split.module.outputs.push_back({"out" + std::to_string(split.module.outputs.size())});
     split.module.functions[0].body.yields.push_back(value);
   }
-  // A 32-bit integer from two inputs, its upper and lower half; and back: no NaN is ever carried as bits.
+  // A 32-bit integer from two inputs, its upper and lower half; and back: no NaN is ever carried as
+  // bits.
   ir::Value input_int(ir::Rate rate) {
-    const ir::Value high = build.emit(ir::Op::f2i, {input(rate)}), low = build.emit(ir::Op::f2i, {input(rate)});
+    const ir::Value high = build.emit(ir::Op::f2i, {input(rate)}),
+                    low = build.emit(ir::Op::f2i, {input(rate)});
     return build.emit(ir::Op::ior, {build.emit(ir::Op::ishl, {high, build.const_i32(16)}), low});
   }
   void output_int(ir::Value value) {
@@ -67,7 +69,9 @@ struct Machine {
   int width;
   std::string cpu;
 };
-inline void PrintTo(const Machine& machine, std::ostream* out) { *out << machine.cpu << " x" << machine.width; }
+inline void PrintTo(const Machine& machine, std::ostream* out) {
+  *out << machine.cpu << " x" << machine.width;
+}
 
 // Every width on every level that this processor has.
 inline std::vector<Machine> all_machines() {
@@ -81,7 +85,8 @@ inline std::vector<Machine> all_machines() {
 
 using Columns = std::vector<std::vector<float>>;
 
-inline std::unique_ptr<Kernel> compile(const TestProgram& program, const Machine& machine, bool optimize = true) {
+inline std::unique_ptr<Kernel> compile(const TestProgram& program, const Machine& machine,
+                                       bool optimize = true) {
   CodegenOptions options;
   options.width = machine.width;
   options.cpu = machine.cpu;
@@ -99,9 +104,11 @@ struct Runner {
   RunStatus status;
   Scratch scratch;
 
-  // Runs a frame and its samples. Uniform inputs are taken from `uniforms`, the others from `columns`.
-  Columns operator()(const Kernel& kernel, const ir::Module& module, const std::vector<float>& uniforms,
-                     const Columns& columns, std::int64_t count) {
+  // Runs a frame and its samples. Uniform inputs are taken from `uniforms`, the others from
+  // `columns`.
+  Columns operator()(const Kernel& kernel, const ir::Module& module,
+                     const std::vector<float>& uniforms, const Columns& columns,
+                     std::int64_t count) {
     state.uniforms = uniforms;
     kernel.run_frame(state, status);
     const auto padded = static_cast<std::size_t>((count + 15) / 16 * 16);
@@ -122,11 +129,15 @@ struct Runner {
 };
 
 // Runs on samples only.
-inline Columns run(const TestProgram& program, const Machine& machine, const Columns& columns, std::int64_t count) {
+inline Columns run(const TestProgram& program, const Machine& machine, const Columns& columns,
+                   std::int64_t count) {
   const auto kernel = compile(program, machine);
-  if (!kernel) return Columns(program.split.module.outputs.size(), std::vector<float>(static_cast<std::size_t>(count)));
+  if (!kernel)
+    return Columns(program.split.module.outputs.size(),
+                   std::vector<float>(static_cast<std::size_t>(count)));
   Runner once;
-  Columns out = once(*kernel, program.split.module, std::vector<float>(program.split.module.inputs.size()), columns, count);
+  Columns out = once(*kernel, program.split.module,
+                     std::vector<float>(program.split.module.inputs.size()), columns, count);
   EXPECT_EQ(once.status.failed_check.load(), -1);
   return out;
 }

@@ -1,4 +1,5 @@
-// Tables and arrays: every entry of every size, indices in and out of bounds, lengths that differ between samples.
+// Tables and arrays: every entry of every size, indices in and out of bounds, lengths that differ
+// between samples.
 #include "kernel_fixture.h"
 
 namespace pse::testing_support {
@@ -25,7 +26,8 @@ TEST_P(Memory, TablesOfEverySize) {
       module.int_tables[0].entries.push_back(i * 77777 - 1000000);
     }
     ir::Builder& b = program.build;
-    const ir::Value index = b.emit(Op::f2i, {program.input()}), same = b.emit(Op::f2i, {program.input(ir::Rate::frame)});
+    const ir::Value index = b.emit(Op::f2i, {program.input()}),
+                    same = b.emit(Op::f2i, {program.input(ir::Rate::frame)});
     program.output(b.emit(Op::table_f32, {index}));
     program.output_int(b.emit(Op::table_i32, {index}));
     program.output(b.emit(Op::table_f32, {same}));
@@ -35,7 +37,8 @@ TEST_P(Memory, TablesOfEverySize) {
     ASSERT_TRUE(kernel);
     Runner once;
     const int count = 2 * size + 5;
-    const Columns out = once(*kernel, module, {0, -1}, {counting(count, static_cast<float>(-size - 3))}, count);
+    const Columns out =
+        once(*kernel, module, {0, -1}, {counting(count, static_cast<float>(-size - 3))}, count);
     for (int s = 0; s < count; ++s) {
       const int entry = ((s - size - 3) % size + size) % size;
       const auto whole = static_cast<std::uint32_t>(entry * 77777 - 1000000);
@@ -53,7 +56,8 @@ TEST_P(Memory, BytesAreLookedUpOneByOne) {
   TestProgram program;
   ir::Module& module = program.split.module;
   module.byte_tables.push_back({"b", {}});
-  for (int i = 0; i < 256; ++i) module.byte_tables[0].entries.push_back(static_cast<std::uint8_t>(i * 167 + 13));
+  for (int i = 0; i < 256; ++i)
+    module.byte_tables[0].entries.push_back(static_cast<std::uint8_t>(i * 167 + 13));
   ir::Builder& b = program.build;
   program.output_int(b.emit(Op::bytes_lookup, {program.input_int(ir::Rate::sample)}));
   program.output_int(b.emit(Op::bytes_lookup, {program.input_int(ir::Rate::frame)}));
@@ -90,7 +94,8 @@ void emit_use(TestProgram& program, ir::Rate index_rate) {
   ir::Builder& b = program.build;
   const ir::Value x = program.input();
   const ir::Value n = b.emit(Op::f2i, {program.input(index_rate)});
-  const ir::Value i = b.emit(Op::f2i, {program.input(index_rate)}), j = b.emit(Op::f2i, {program.input(index_rate)});
+  const ir::Value i = b.emit(Op::f2i, {program.input(index_rate)}),
+                  j = b.emit(Op::f2i, {program.input(index_rate)});
   b.emit_void(Op::array_resize, {n}, 1);
   b.emit_void(Op::array_store, {i, x}, 1, 0);
   b.emit_void(Op::array_store, {i, b.emit(Op::fneg, {x})}, 1, 1);
@@ -106,10 +111,12 @@ struct Use {
   bool hit;  // element j holds x afterwards
   int length;
 };
-constexpr Use uses[] = {{4, 3, 3, true, 4},  {4, 3, 2, false, 4},  {4, 4, 4, false, 4},    {5, 4, 4, true, 5},
-                        {9, 4, 4, true, 5},  {9, 5, 5, false, 5},  {-1, 0, 0, false, 0},   {1, 0, 0, true, 1},
-                        {2, -1, 0, false, 2}, {2, 0, -1, false, 2}, {5, 1000000, 4, false, 5}, {5, 2, 2000000000, false, 5},
-                        {0, 2, 2, false, 0},  {3, 2, 2, true, 3}};
+constexpr Use uses[] = {
+    {4, 3, 3, true, 4},   {4, 3, 2, false, 4},       {4, 4, 4, false, 4},
+    {5, 4, 4, true, 5},   {9, 4, 4, true, 5},        {9, 5, 5, false, 5},
+    {-1, 0, 0, false, 0}, {1, 0, 0, true, 1},        {2, -1, 0, false, 2},
+    {2, 0, -1, false, 2}, {5, 1000000, 4, false, 5}, {5, 2, 2000000000, false, 5},
+    {0, 2, 2, false, 0},  {3, 2, 2, true, 3}};
 
 TEST_P(Memory, ArraysWithVaryingIndices) {
   TestProgram program;
@@ -137,7 +144,8 @@ TEST_P(Memory, ArraysWithUniformIndices) {
   ASSERT_TRUE(kernel);
   for (const Use& use : uses) {
     Runner once;
-    const std::vector<float> uniforms = {0, static_cast<float>(use.n), static_cast<float>(use.i), static_cast<float>(use.j)};
+    const std::vector<float> uniforms = {0, static_cast<float>(use.n), static_cast<float>(use.i),
+                                         static_cast<float>(use.j)};
     // Twice: a second vector of samples must not see the first one's elements.
     const Columns out = once(*kernel, program.split.module, uniforms, {counting(40, 1)}, 40);
     for (std::size_t s = 0; s < 40; ++s) {
@@ -180,7 +188,8 @@ TEST_P(Memory, NewElementsAreZero) {
   ir::Builder& b = program.build;
   const ir::Value n = b.emit(Op::f2i, {program.input()});
   b.emit_void(Op::array_resize, {b.const_i32(5)}, 1);
-  for (int i = 0; i < 5; ++i) b.emit_void(Op::array_store, {b.const_i32(i), b.const_f32(static_cast<float>(i + 1))}, 1, 0);
+  for (int i = 0; i < 5; ++i)
+    b.emit_void(Op::array_store, {b.const_i32(i), b.const_f32(static_cast<float>(i + 1))}, 1, 0);
   b.emit_void(Op::array_resize, {n}, 1);
   b.emit_void(Op::array_resize, {b.const_i32(5)}, 1);
   for (int i = 0; i < 5; ++i) program.output(b.emit(Op::array_load, {b.const_i32(i)}, 1, 0));
@@ -212,7 +221,8 @@ TEST_P(Memory, FrameArraysAndSlots) {
     f.emit_void(Op::array_store, {f.const_i32(2), f.const_f32(5)}, 1, 1);
     f.emit_void(Op::array_store, {f.const_i32(5), f.const_f32(1)}, 1, 1);
     f.emit_void(Op::array_store, {f.const_i32(-1), f.const_f32(1)}, 1, 1);
-    frame.body.yields = {f.emit(Op::fadd, {k, f.const_f32(1)}), f.emit(Op::bits2f, {f.const_i32(0x7f812345)})};
+    frame.body.yields = {f.emit(Op::fadd, {k, f.const_f32(1)}),
+                         f.emit(Op::bits2f, {f.const_i32(0x7f812345)})};
   }
   program.output(b.emit(Op::array_load, {j}, 1, 0));
   program.output(b.emit(Op::array_load, {j}, 1, 1));

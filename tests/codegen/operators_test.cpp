@@ -1,4 +1,5 @@
-// Every operator without control against answers derived by hand, edge cases included, as varying and uniform values.
+// Every operator without control against answers derived by hand, edge cases included, as varying
+// and uniform values.
 #include "kernel_fixture.h"
 
 namespace pse::testing_support {
@@ -8,7 +9,8 @@ using ir::Op;
 
 class Operator : public OnEveryMachine {};
 
-constexpr std::uint32_t inf = 0x7f800000u, minus_inf = 0xff800000u, nan1 = 0x7fc00000u, zero = 0, minus_zero = 0x80000000u;
+constexpr std::uint32_t inf = 0x7f800000u, minus_inf = 0xff800000u, nan1 = 0x7fc00000u, zero = 0,
+                        minus_zero = 0x80000000u;
 constexpr std::uint32_t tiny = 1, one = 0x3f800000u, minus_one = 0xbf800000u, huge = 0x7f7fffffu;
 std::uint32_t f(float value) { return bits(value); }
 
@@ -24,8 +26,8 @@ const std::vector<Case>& cases() {
       {Op::fadd, {inf, minus_inf}, nan1},
       {Op::fadd, {minus_zero, zero}, zero},
       {Op::fadd, {minus_zero, minus_zero}, minus_zero},
-      {Op::fadd, {tiny, tiny}, 2},                                   // subnormals are kept
-      {Op::fadd, {f(16777216.0f), one}, f(16777216.0f)},             // half to even
+      {Op::fadd, {tiny, tiny}, 2},                        // subnormals are kept
+      {Op::fadd, {f(16777216.0f), one}, f(16777216.0f)},  // half to even
       {Op::fadd, {f(16777216.0f), f(3.0f)}, f(16777220.0f)},
       {Op::fadd, {huge, huge}, inf},
       {Op::fsub, {one, f(1.00000012f)}, 0xb4000000u},
@@ -35,14 +37,15 @@ const std::vector<Case>& cases() {
       {Op::fmul, {f(3.0f), f(-2.0f)}, f(-6.0f)},
       {Op::fmul, {zero, inf}, nan1},
       {Op::fmul, {zero, minus_one}, minus_zero},
-      {Op::fmul, {0x00800000u, f(0.5f)}, 0x00400000u},               // into the subnormals
+      {Op::fmul, {0x00800000u, f(0.5f)}, 0x00400000u},  // into the subnormals
       {Op::fdiv, {one, f(3.0f)}, 0x3eaaaaabu},
       {Op::fdiv, {one, zero}, inf},
       {Op::fdiv, {one, minus_zero}, minus_inf},
       {Op::fdiv, {minus_one, zero}, minus_inf},
       {Op::fdiv, {zero, zero}, nan1},
       {Op::fdiv, {minus_zero, minus_zero}, nan1},
-      // (1 + 2^-23)^2 = 1 + 2^-22 + 2^-46: with one rounding 2^-46 remains after subtracting the rest
+      // (1 + 2^-23)^2 = 1 + 2^-22 + 2^-46: with one rounding 2^-46 remains after subtracting the
+      // rest
       {Op::fma, {0x3f800001u, 0x3f800001u, f(-1.0f - 0x1p-22f)}, f(0x1p-46f)},
       {Op::fma, {zero, inf, one}, nan1},
       {Op::fma, {f(2.0f), f(3.0f), f(4.0f)}, f(10.0f)},
@@ -54,7 +57,7 @@ const std::vector<Case>& cases() {
       {Op::fsqrt, {f(2.0f)}, 0x3fb504f3u},
       {Op::fsqrt, {minus_zero}, minus_zero},
       {Op::fsqrt, {minus_one}, nan1},
-      {Op::fsqrt, {tiny}, 0x1a3504f3u},                              // 2^-149 -> 2^-75 sqrt(2)
+      {Op::fsqrt, {tiny}, 0x1a3504f3u},  // 2^-149 -> 2^-75 sqrt(2)
       {Op::fsqrt, {inf}, inf},
       {Op::fmin, {one, f(2.0f)}, one},
       {Op::fmin, {nan1, one}, one},
@@ -212,7 +215,8 @@ struct AllOperators {
       columns.resize(program.split.module.inputs.size());
       for (const Case& c : these) {
         std::vector<float> row;
-        for (std::size_t i = 0; i < c.operands.size(); ++i) append(row, info.operands[i], c.operands[i]);
+        for (std::size_t i = 0; i < c.operands.size(); ++i)
+          append(row, info.operands[i], c.operands[i]);
         for (std::size_t i = 0; i < row.size(); ++i) columns[first + i].push_back(row[i]);
       }
       longest = std::max(longest, these.size());
@@ -243,7 +247,8 @@ struct AllOperators {
 
 TEST_P(Operator, GivesTheTablesBits) {
   const AllOperators all(ir::Rate::sample);
-  const Columns out = run(all.program, GetParam(), all.columns, static_cast<std::int64_t>(all.longest));
+  const Columns out =
+      run(all.program, GetParam(), all.columns, static_cast<std::int64_t>(all.longest));
   for (std::size_t i = 0; i < all.longest; ++i) all.expect_case(out, i, i);
 }
 
@@ -284,7 +289,8 @@ TEST_P(Operator, OutputsStoreTheOneNaN) {
   program.output(program.input());
   program.output(program.build.const_f32(from_bits(0xffc00001u)));
   program.finish();
-  const Columns out = run(program, GetParam(), {{from_bits(0xffffffffu), from_bits(0x7f800001u), 1.0f}}, 3);
+  const Columns out =
+      run(program, GetParam(), {{from_bits(0xffffffffu), from_bits(0x7f800001u), 1.0f}}, 3);
   EXPECT_EQ(bits(out[0][0]), nan_bits);
   EXPECT_EQ(bits(out[0][1]), nan_bits);
   EXPECT_EQ(out[0][2], 1.0f);

@@ -1,5 +1,6 @@
-// if and loop. Uniform conditions branch. Varying ones run both sides under masks, each side only if a sample needs it;
-// a loop turns while any sample is active, and samples that have finished keep their values.
+// if and loop. Uniform conditions branch. Varying ones run both sides under masks, each side only
+// if a sample needs it; a loop turns while any sample is active, and samples that have finished
+// keep their values.
 #include <cstddef>
 
 #include "codegen/kernel_call.h"
@@ -11,7 +12,9 @@ llvm::BasicBlock* FunctionEmitter::new_block(const char* name) {
   return llvm::BasicBlock::Create(context_, name, out_);
 }
 
-llvm::Value* FunctionEmitter::all_lanes() { return llvm::Constant::getAllOnesValue(lanes_type(i1_, lanes_)); }
+llvm::Value* FunctionEmitter::all_lanes() {
+  return llvm::Constant::getAllOnesValue(lanes_type(i1_, lanes_));
+}
 
 llvm::Value* FunctionEmitter::and_masks(llvm::Value* a, llvm::Value* b) {
   if (!a || !b) return a ? a : b;
@@ -24,7 +27,8 @@ llvm::Value* FunctionEmitter::any(llvm::Value* mask) {
 }
 
 llvm::Value* FunctionEmitter::to_stored(llvm::Value* value) {
-  if (parent_.target().avx512 || lanes_of(value) == 1 || !value->getType()->isIntOrIntVectorTy(1)) return value;
+  if (parent_.target().avx512 || lanes_of(value) == 1 || !value->getType()->isIntOrIntVectorTy(1))
+    return value;
   return b_.CreateSExt(value, lanes_type(i32_, lanes_of(value)));
 }
 
@@ -33,7 +37,8 @@ llvm::Value* FunctionEmitter::from_stored(llvm::Value* value, ir::Type type) {
   return b_.CreateICmpSLT(value, llvm::Constant::getNullValue(value->getType()));
 }
 
-void FunctionEmitter::bind_params(const std::vector<ir::Value>& params, const std::vector<llvm::Value*>& values) {
+void FunctionEmitter::bind_params(const std::vector<ir::Value>& params,
+                                  const std::vector<llvm::Value*>& values) {
   for (std::size_t i = 0; i < params.size(); ++i) values_[params[i]] = values[i];
 }
 
@@ -58,7 +63,8 @@ void FunctionEmitter::emit_if(const ir::Instruction& in) {
 
 void FunctionEmitter::emit_uniform_if(const ir::Instruction& in) {
   llvm::Value* condition = get(in.operands[0]);
-  llvm::BasicBlock *sides[2] = {new_block("then"), new_block("else")}, *after = new_block("after_if");
+  llvm::BasicBlock *sides[2] = {new_block("then"), new_block("else")},
+                   *after = new_block("after_if");
   b_.CreateCondBr(condition, sides[0], sides[1]);
   std::vector<llvm::Value*> yields[2];
   llvm::BasicBlock* ends[2];
@@ -123,7 +129,8 @@ void FunctionEmitter::emit_varying_if(const ir::Instruction& in) {
   for (std::size_t i = 0; i < in.results.size(); ++i) {
     // Uniform only where both sides hand on the same value from outside.
     const bool wide = varying(in.results[i]);
-    values_[in.results[i]] = wide ? b_.CreateSelect(condition, yields[0][i], yields[1][i]) : get(in.regions[0].yields[i]);
+    values_[in.results[i]] = wide ? b_.CreateSelect(condition, yields[0][i], yields[1][i])
+                                  : get(in.regions[0].yields[i]);
   }
 }
 
@@ -139,8 +146,10 @@ void FunctionEmitter::emit_uniform_loop(const ir::Instruction& in) {
   const ir::Region &head = in.regions[0], &body = in.regions[1];
   const std::size_t count = head.params.size();
   std::vector<llvm::Value*> initial;
-  for (std::size_t i = 0; i < count; ++i) initial.push_back(to_stored(get_as(in.operands[i], varying(head.params[i]))));
-  llvm::BasicBlock *before = b_.GetInsertBlock(), *turn = new_block("loop"), *inside = new_block("loop_body");
+  for (std::size_t i = 0; i < count; ++i)
+    initial.push_back(to_stored(get_as(in.operands[i], varying(head.params[i]))));
+  llvm::BasicBlock *before = b_.GetInsertBlock(), *turn = new_block("loop"),
+                   *inside = new_block("loop_body");
   llvm::BasicBlock* after = new_block("after_loop");
   b_.CreateBr(turn);
 
@@ -151,7 +160,8 @@ void FunctionEmitter::emit_uniform_loop(const ir::Instruction& in) {
     phis.back()->addIncoming(value, before);
   }
   std::vector<llvm::Value*> params;
-  for (std::size_t i = 0; i < count; ++i) params.push_back(from_stored(phis[i], type(head.params[i])));
+  for (std::size_t i = 0; i < count; ++i)
+    params.push_back(from_stored(phis[i], type(head.params[i])));
   bind_params(head.params, params);
   bind_params(body.params, params);
   emit_region(head);
@@ -160,7 +170,8 @@ void FunctionEmitter::emit_uniform_loop(const ir::Instruction& in) {
   b_.SetInsertPoint(inside);
   emit_region(body);
   std::vector<llvm::Value*> next;
-  for (std::size_t i = 0; i < count; ++i) next.push_back(to_stored(get_as(body.yields[i], varying(head.params[i]))));
+  for (std::size_t i = 0; i < count; ++i)
+    next.push_back(to_stored(get_as(body.yields[i], varying(head.params[i]))));
   poll();
   for (std::size_t i = 0; i < count; ++i) phis[i]->addIncoming(next[i], b_.GetInsertBlock());
   b_.CreateBr(turn);
@@ -176,14 +187,16 @@ void FunctionEmitter::emit_varying_loop(const ir::Instruction& in) {
   const std::size_t count = head.params.size();
   llvm::Value* outer = mask_;
   std::vector<llvm::Value*> initial;
-  for (std::size_t i = 0; i < count; ++i) initial.push_back(to_stored(get_as(in.operands[i], varying(head.params[i]))));
+  for (std::size_t i = 0; i < count; ++i)
+    initial.push_back(to_stored(get_as(in.operands[i], varying(head.params[i]))));
   llvm::Value* initial_mask = to_stored(outer ? outer : all_lanes());
-  llvm::BasicBlock *before = b_.GetInsertBlock(), *turn = new_block("loop"), *inside = new_block("loop_body");
+  llvm::BasicBlock *before = b_.GetInsertBlock(), *turn = new_block("loop"),
+                   *inside = new_block("loop_body");
   llvm::BasicBlock* after = new_block("after_loop");
   b_.CreateBr(turn);
 
-  // Which samples are still active, and the parameters; those that are uniform here need a varying twin that keeps the
-  // value each sample left with.
+  // Which samples are still active, and the parameters; those that are uniform here need a varying
+  // twin that keeps the value each sample left with.
   b_.SetInsertPoint(turn);
   llvm::PHINode* active_phi = b_.CreatePHI(initial_mask->getType(), 2, "active");
   active_phi->addIncoming(initial_mask, before);
@@ -200,12 +213,14 @@ void FunctionEmitter::emit_varying_loop(const ir::Instruction& in) {
   }
   llvm::Value* active = from_stored(active_phi, ir::Type::boolean);
   std::vector<llvm::Value*> params, left_with(count);
-  for (std::size_t i = 0; i < count; ++i) params.push_back(from_stored(phis[i], type(head.params[i])));
+  for (std::size_t i = 0; i < count; ++i)
+    params.push_back(from_stored(phis[i], type(head.params[i])));
   bind_params(head.params, params);
   bind_params(body.params, params);
   for (std::size_t i = 0; i < count; ++i) {
     if (!twins[i]) continue;
-    left_with[i] = b_.CreateSelect(active, splat(params[i]), from_stored(twins[i], type(head.params[i])));
+    left_with[i] =
+        b_.CreateSelect(active, splat(params[i]), from_stored(twins[i], type(head.params[i])));
   }
   mask_ = active;
   emit_region(head);

@@ -1,4 +1,5 @@
-// What leaves the function: failed checks, calls of the program's own functions, calls of the host's.
+// What leaves the function: failed checks, calls of the program's own functions, calls of the
+// host's.
 #include <cstddef>
 
 #include "codegen/kernel_call.h"
@@ -83,8 +84,10 @@ void FunctionEmitter::emit_external(const ir::Instruction& in) {
 
   llvm::Value* functions = call_field(offsetof(KernelCall, externals), ptr_);
   const auto place = 2 * static_cast<std::uint64_t>(in.imm);
-  llvm::Value* function = b_.CreateLoad(ptr_, b_.CreateConstInBoundsGEP1_64(ptr_, functions, place));
-  llvm::Value* user = b_.CreateLoad(ptr_, b_.CreateConstInBoundsGEP1_64(ptr_, functions, place + 1));
+  llvm::Value* function =
+      b_.CreateLoad(ptr_, b_.CreateConstInBoundsGEP1_64(ptr_, functions, place));
+  llvm::Value* user =
+      b_.CreateLoad(ptr_, b_.CreateConstInBoundsGEP1_64(ptr_, functions, place + 1));
   auto* signature = llvm::FunctionType::get(b_.getVoidTy(), {ptr_, i64_, ptr_, ptr_}, false);
   b_.CreateCall(signature, function, {user, b_.getInt64(lanes), argument_table, result_table});
   for (std::size_t i = 0; i < in.results.size(); ++i) {

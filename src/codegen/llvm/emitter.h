@@ -1,7 +1,8 @@
-// IR -> LLVM IR, once, for every vector width. A ModuleEmitter owns what a kernel shares (tables, called functions); a
-// FunctionEmitter writes one function. A value that is the same for all samples of a vector is a scalar, any other
-// is a vector of `width` lanes; at width 1 everything is a scalar.
-// Split over files by what is emitted: module_, value_, control_, table_, array_ and effect_emitter.cpp.
+// IR -> LLVM IR, once, for every vector width. A ModuleEmitter owns what a kernel shares (tables,
+// called functions); a FunctionEmitter writes one function. A value that is the same for all
+// samples of a vector is a scalar, any other is a vector of `width` lanes; at width 1 everything is
+// a scalar. Split over files by what is emitted: module_, value_, control_, table_, array_ and
+// effect_emitter.cpp.
 #pragma once
 
 #include <map>
@@ -33,9 +34,10 @@ class ModuleEmitter {
   llvm::Type* type_of(ir::Type type, unsigned lanes);
   // A read-only global with these contents; equal contents are one global.
   llvm::Value* constant_data(llvm::Constant* contents);
-  // The function `index` of the IR for vectors of `lanes`, where these parameters vary. Its LLVM parameters are the
-  // KernelCall, the mask of active lanes (if it takes one), and the operands.
-  llvm::Function* called_function(std::uint32_t index, const std::vector<bool>& varying, unsigned lanes);
+  // The function `index` of the IR for vectors of `lanes`, where these parameters vary. Its LLVM
+  // parameters are the KernelCall, the mask of active lanes (if it takes one), and the operands.
+  llvm::Function* called_function(std::uint32_t index, const std::vector<bool>& varying,
+                                  unsigned lanes);
   // Whether a function does anything that depends on which lanes are active.
   bool takes_mask(std::uint32_t index, unsigned lanes) const;
 
@@ -53,8 +55,8 @@ class ModuleEmitter {
 
 class FunctionEmitter {
  public:
-  FunctionEmitter(ModuleEmitter& parent, const ir::Function& function, Uniformity uniformity, unsigned lanes,
-                  llvm::Function* out);
+  FunctionEmitter(ModuleEmitter& parent, const ir::Function& function, Uniformity uniformity,
+                  unsigned lanes, llvm::Function* out);
 
   // The body of an entry point over all samples, or once.
   void emit_sample_loop(const std::vector<ir::Output>& outputs);
@@ -96,7 +98,8 @@ class FunctionEmitter {
   llvm::Value* bytes_add(llvm::Value* a, llvm::Value* b);
   llvm::Value* bytes_lookup(const ir::ByteTable& table, llvm::Value* index);
   llvm::Value* bytes_lookup_vbmi(const ir::ByteTable& table, llvm::Value* bytes);
-  llvm::Value* bytes_lookup_shuffles(const ir::ByteTable& table, llvm::Value* bytes, unsigned piece);
+  llvm::Value* bytes_lookup_shuffles(const ir::ByteTable& table, llvm::Value* bytes,
+                                     unsigned piece);
   llvm::Value* bytes_lookup_scalar(const ir::ByteTable& table, llvm::Value* index);
 
   // control_emitter.cpp
@@ -112,7 +115,8 @@ class FunctionEmitter {
   llvm::Value* and_masks(llvm::Value* a, llvm::Value* b);  // null: all lanes
   llvm::Value* all_lanes();
   llvm::BasicBlock* new_block(const char* name);
-  // Booleans live across blocks as integers of full width where the processor has no mask registers.
+  // Booleans live across blocks as integers of full width where the processor has no mask
+  // registers.
   llvm::Value* to_stored(llvm::Value* value);
   llvm::Value* from_stored(llvm::Value* value, ir::Type type);
 
@@ -132,8 +136,8 @@ class FunctionEmitter {
   llvm::Value* emit_array_load(const ir::Instruction& in);
   void emit_array_store(const ir::Instruction& in);
   void emit_array_resize(const ir::Instruction& in);
-  void clear_elements(std::int32_t array, llvm::Value* from, llvm::Value* to, llvm::Value* old_length,
-                      llvm::Value* new_length);
+  void clear_elements(std::int32_t array, llvm::Value* from, llvm::Value* to,
+                      llvm::Value* old_length, llvm::Value* new_length);
 
   // effect_emitter.cpp
   void emit_check(const ir::Instruction& in);
@@ -151,13 +155,15 @@ class FunctionEmitter {
   llvm::LLVMContext& context_;
   llvm::Type *f32_, *i32_, *i64_, *i1_, *ptr_;
 
-  llvm::BasicBlock* entry_ = nullptr;    // allocas and loads of what never changes
-  llvm::BasicBlock* stop_ = nullptr;     // leaves early
-  llvm::Value* call_ = nullptr;          // the KernelCall
-  llvm::Value* base_ = nullptr;          // index of the first sample of this vector; null outside a sample loop
-  llvm::Value* mask_ = nullptr;          // active lanes; null: all
-  std::vector<llvm::Value*> values_;     // per ir::Value
-  std::vector<llvm::Value*> inputs_;     // per Module::inputs: the value if uniform, the array if of rate sample
+  llvm::BasicBlock* entry_ = nullptr;  // allocas and loads of what never changes
+  llvm::BasicBlock* stop_ = nullptr;   // leaves early
+  llvm::Value* call_ = nullptr;        // the KernelCall
+  llvm::Value* base_ =
+      nullptr;  // index of the first sample of this vector; null outside a sample loop
+  llvm::Value* mask_ = nullptr;       // active lanes; null: all
+  std::vector<llvm::Value*> values_;  // per ir::Value
+  std::vector<llvm::Value*>
+      inputs_;  // per Module::inputs: the value if uniform, the array if of rate sample
   std::vector<bool> input_used_;
   std::vector<ArrayState> arrays_;
   std::map<std::size_t, llvm::Value*> call_fields_;

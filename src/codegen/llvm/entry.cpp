@@ -43,7 +43,7 @@ void run(const BackendRequest& request, BackendReply& reply) {
 }  // namespace
 }  // namespace pse
 
-extern "C" __attribute__((visibility("default"))) void pse_llvm_compile(const pse::BackendRequest* request,
-                                                                        pse::BackendReply* reply) {
+extern "C" __attribute__((visibility("default"))) void pse_llvm_compile(
+    const pse::BackendRequest* request, pse::BackendReply* reply) {
   pse::run(*request, *reply);
 }

@@ -1,4 +1,5 @@
-// The shells of a kernel: its entry points, its loop over the samples, its read-only data and called functions.
+// The shells of a kernel: its entry points, its loop over the samples, its read-only data and
+// called functions.
 #include <algorithm>
 #include <cstddef>
 
@@ -9,7 +10,8 @@ namespace pse {
 namespace {
 
 llvm::FunctionType* entry_type(llvm::LLVMContext& context) {
-  return llvm::FunctionType::get(llvm::Type::getVoidTy(context), {llvm::PointerType::get(context, 0)}, false);
+  return llvm::FunctionType::get(llvm::Type::getVoidTy(context),
+                                 {llvm::PointerType::get(context, 0)}, false);
 }
 
 }  // namespace
@@ -32,8 +34,8 @@ llvm::Type* ModuleEmitter::type_of(ir::Type type, unsigned lanes) {
 llvm::Value* ModuleEmitter::constant_data(llvm::Constant* contents) {
   llvm::Value*& data = data_[contents];
   if (!data) {
-    auto* global = new llvm::GlobalVariable(out_, contents->getType(), true, llvm::GlobalValue::PrivateLinkage,
-                                            contents, "table");
+    auto* global = new llvm::GlobalVariable(out_, contents->getType(), true,
+                                            llvm::GlobalValue::PrivateLinkage, contents, "table");
     global->setAlignment(llvm::Align(64));
     global->setUnnamedAddr(llvm::GlobalValue::UnnamedAddr::Global);
     data = global;
@@ -41,13 +43,16 @@ llvm::Value* ModuleEmitter::constant_data(llvm::Constant* contents) {
   return data;
 }
 
-llvm::Function* ModuleEmitter::add_function(llvm::FunctionType* type, const std::string& name, bool external) {
-  const auto linkage = external ? llvm::GlobalValue::ExternalLinkage : llvm::GlobalValue::InternalLinkage;
+llvm::Function* ModuleEmitter::add_function(llvm::FunctionType* type, const std::string& name,
+                                            bool external) {
+  const auto linkage =
+      external ? llvm::GlobalValue::ExternalLinkage : llvm::GlobalValue::InternalLinkage;
   llvm::Function* function = llvm::Function::Create(type, linkage, name, out_);
   function->addFnAttr(llvm::Attribute::NoUnwind);
   function->addFnAttr("target-cpu", target_.cpu);
   function->addFnAttr("target-features", target_.features);
-  // The vectors that are written are the vectors that run: nothing is cut into halves to save power.
+  // The vectors that are written are the vectors that run: nothing is cut into halves to save
+  // power.
   function->addFnAttr("prefer-vector-width", "512");
   function->addFnAttr("min-legal-vector-width", "512");
   if (!external) function->setCallingConv(llvm::CallingConv::Fast);
@@ -69,12 +74,14 @@ void ModuleEmitter::emit_frame() {
 
 bool ModuleEmitter::takes_mask(std::uint32_t index, unsigned lanes) const {
   const auto& body = ir_.functions[index].body.body;
-  const auto depends = [](const ir::Instruction& in) { return !in.regions.empty() || in.op == ir::Op::call; };
+  const auto depends = [](const ir::Instruction& in) {
+    return !in.regions.empty() || in.op == ir::Op::call;
+  };
   return lanes > 1 && std::ranges::any_of(body, depends);
 }
 
-llvm::Function* ModuleEmitter::called_function(std::uint32_t index, const std::vector<bool>& varying,
-                                               unsigned lanes) {
+llvm::Function* ModuleEmitter::called_function(std::uint32_t index,
+                                               const std::vector<bool>& varying, unsigned lanes) {
   llvm::Function*& out = called_[{index, varying}];
   if (out) return out;
   const ir::Function& function = ir_.functions[index];
@@ -83,7 +90,8 @@ llvm::Function* ModuleEmitter::called_function(std::uint32_t index, const std::v
   std::vector<llvm::Type*> params = {llvm::PointerType::get(context, 0)};
   if (takes_mask(index, lanes)) params.push_back(lanes_type(llvm::Type::getInt1Ty(context), lanes));
   for (std::size_t i = 0; i < varying.size(); ++i) {
-    params.push_back(type_of(function.values[function.body.params[i]].type, varying[i] ? lanes : 1));
+    params.push_back(
+        type_of(function.values[function.body.params[i]].type, varying[i] ? lanes : 1));
   }
   std::vector<llvm::Type*> results;
   for (const ir::Value value : function.body.yields) {
@@ -92,13 +100,15 @@ llvm::Function* ModuleEmitter::called_function(std::uint32_t index, const std::v
   auto* type = llvm::FunctionType::get(llvm::StructType::get(context, results), params, false);
   out = add_function(type, "call." + function.name, false);
   llvm::Function* created = out;  // emitting may add to the map
-  Uniformity uniformity = lanes == 1 ? all_uniform(function) : find_uniformity(ir_, function, varying);
-  FunctionEmitter(*this, function, std::move(uniformity), lanes, created).emit_called(takes_mask(index, lanes));
+  Uniformity uniformity =
+      lanes == 1 ? all_uniform(function) : find_uniformity(ir_, function, varying);
+  FunctionEmitter(*this, function, std::move(uniformity), lanes, created)
+      .emit_called(takes_mask(index, lanes));
   return created;
 }
 
-FunctionEmitter::FunctionEmitter(ModuleEmitter& parent, const ir::Function& function, Uniformity uniformity,
-                                 unsigned lanes, llvm::Function* out)
+FunctionEmitter::FunctionEmitter(ModuleEmitter& parent, const ir::Function& function,
+                                 Uniformity uniformity, unsigned lanes, llvm::Function* out)
     : parent_(parent),
       ir_(parent.ir()),
       function_(function),
@@ -132,7 +142,8 @@ llvm::Value* FunctionEmitter::call_field(std::size_t offset, llvm::Type* field_t
   } else {
     b_.SetInsertPoint(entry_);
   }
-  auto* load = b_.CreateLoad(field_type, b_.CreateConstInBoundsGEP1_64(b_.getInt8Ty(), call_, offset));
+  auto* load =
+      b_.CreateLoad(field_type, b_.CreateConstInBoundsGEP1_64(b_.getInt8Ty(), call_, offset));
   load->setMetadata(llvm::LLVMContext::MD_invariant_load, llvm::MDNode::get(context_, {}));
   field = load;
   return field;

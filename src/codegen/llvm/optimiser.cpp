@@ -17,7 +17,8 @@
 
 namespace pse {
 
-std::unique_ptr<llvm::TargetMachine> make_target_machine(const Target& target, bool optimize, std::string& error) {
+std::unique_ptr<llvm::TargetMachine> make_target_machine(const Target& target, bool optimize,
+                                                         std::string& error) {
   static const bool initialized = [] {
     LLVMInitializeX86TargetInfo();
     LLVMInitializeX86Target();
@@ -34,7 +35,9 @@ std::unique_ptr<llvm::TargetMachine> make_target_machine(const Target& target, b
   options.AllowFPOpFusion = llvm::FPOpFusion::Strict;
   options.UnsafeFPMath = false;
   const auto level = optimize ? llvm::CodeGenOptLevel::Default : llvm::CodeGenOptLevel::Less;
-  return std::unique_ptr<llvm::TargetMachine>(found->createTargetMachine(triple, target.cpu, target.features, options, llvm::Reloc::PIC_, llvm::CodeModel::Small, level));
+  return std::unique_ptr<llvm::TargetMachine>(
+      found->createTargetMachine(triple, target.cpu, target.features, options, llvm::Reloc::PIC_,
+                                 llvm::CodeModel::Small, level));
 }
 
 void optimise(llvm::Module& module, llvm::TargetMachine& machine) {
@@ -61,7 +64,8 @@ void optimise(llvm::Module& module, llvm::TargetMachine& machine) {
   }
 }
 
-std::string generate(llvm::Module& module, llvm::TargetMachine& machine, llvm::CodeGenFileType type) {
+std::string generate(llvm::Module& module, llvm::TargetMachine& machine,
+                     llvm::CodeGenFileType type) {
   llvm::SmallString<0> bytes;
   llvm::raw_svector_ostream stream(bytes);
   llvm::legacy::PassManager passes;

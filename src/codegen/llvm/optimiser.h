@@ -13,9 +13,11 @@
 namespace pse {
 
 // Null, with a reason, where LLVM knows no such processor.
-std::unique_ptr<llvm::TargetMachine> make_target_machine(const Target& target, bool optimize, std::string& error);
+std::unique_ptr<llvm::TargetMachine> make_target_machine(const Target& target, bool optimize,
+                                                         std::string& error);
 void optimise(llvm::Module& module, llvm::TargetMachine& machine);
 // A relocatable object, or assembly text.
-std::string generate(llvm::Module& module, llvm::TargetMachine& machine, llvm::CodeGenFileType type);
+std::string generate(llvm::Module& module, llvm::TargetMachine& machine,
+                     llvm::CodeGenFileType type);
 
 }  // namespace pse

@@ -1,5 +1,6 @@
-// Marks values as varying until nothing changes. A parameter of a loop with a varying condition can still be uniform
-// inside the loop, since all samples that are active there have run it equally often; its result is varying.
+// Marks values as varying until nothing changes. A parameter of a loop with a varying condition can
+// still be uniform inside the loop, since all samples that are active there have run it equally
+// often; its result is varying.
 #include "codegen/llvm/uniformity.h"
 
 #include <algorithm>
@@ -79,7 +80,8 @@ class Finder {
 
   void visit_loop(const ir::Instruction& in, bool in_varying_control) {
     const ir::Region &head = in.regions[0], &body = in.regions[1];
-    for (std::size_t i = 0; i < head.params.size(); ++i) mark(head.params[i], varying(in.operands[i]));
+    for (std::size_t i = 0; i < head.params.size(); ++i)
+      mark(head.params[i], varying(in.operands[i]));
     region(head, in_varying_control || varying(head.yields[0]));
     const bool split = varying(head.yields[0]);
     for (std::size_t i = 0; i < head.params.size(); ++i) {
@@ -101,7 +103,8 @@ class Finder {
 }  // namespace
 
 Uniformity all_uniform(const ir::Function& function) {
-  return {std::vector<bool>(function.values.size(), false), std::vector<bool>(function.arrays.size(), false)};
+  return {std::vector<bool>(function.values.size(), false),
+          std::vector<bool>(function.arrays.size(), false)};
 }
 
 Uniformity find_uniformity(const ir::Module& module, const ir::Function& function,

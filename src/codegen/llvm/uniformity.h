@@ -9,7 +9,8 @@
 namespace pse {
 
 struct Uniformity {
-  std::vector<bool> varying;         // per Value: differs between samples that are active where it is visible
+  std::vector<bool>
+      varying;  // per Value: differs between samples that are active where it is visible
   std::vector<bool> varying_length;  // per Array of rate sample: its length differs between samples
 };
 

@@ -1,5 +1,5 @@
-// Small helpers over LLVM vectors: lanes, pieces of a machine register's size, whole-register intrinsics.
-// Used by all parts of the emitter.
+// Small helpers over LLVM vectors: lanes, pieces of a machine register's size, whole-register
+// intrinsics. Used by all parts of the emitter.
 #pragma once
 
 #include <functional>
@@ -18,7 +18,8 @@ llvm::Type* lanes_type(llvm::Type* type, unsigned lanes);
 llvm::Value* lanes_slice(IrBuilder& b, llvm::Value* value, unsigned first, unsigned count);
 llvm::Value* lanes_concat(IrBuilder& b, llvm::Value* low, llvm::Value* high);
 
-// Applies `f`, which takes and gives vectors of `piece` lanes, to a vector of any power-of-two number of lanes.
+// Applies `f`, which takes and gives vectors of `piece` lanes, to a vector of any power-of-two
+// number of lanes.
 llvm::Value* by_pieces(IrBuilder& b, llvm::Value* value, unsigned piece,
                        const std::function<llvm::Value*(llvm::Value*)>& f);
 

@@ -126,10 +126,12 @@ def main():
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--fuzz", type=pathlib.Path)
     parser.add_argument("--fuzz-seconds", type=int, default=60)
-    parser.add_argument("ctest_options", nargs="*")
-    arguments = parser.parse_args()
+    # What stands behind `--` is ctest's; argparse would not tell it from our own words.
+    words = sys.argv[1:]
+    cut = words.index("--") if "--" in words else len(words)
+    arguments = parser.parse_args(words[:cut])
 
-    total, failures = run_ctest(arguments.build.resolve(), arguments.ctest_options)
+    total, failures = run_ctest(arguments.build.resolve(), words[cut + 1:])
     if arguments.fuzz:
         fuzz_total, fuzz_failures = run_fuzz(arguments.fuzz.resolve(), arguments.fuzz_seconds)
         total = [a + b for a, b in zip(total, fuzz_total)]

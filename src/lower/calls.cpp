@@ -1,4 +1,6 @@
 // Calls: a function of the language is lowered into its caller for the types it is called with.
+#include <algorithm>
+
 #include "lower/lowering.h"
 
 namespace pse::lower {
@@ -70,13 +72,19 @@ Typed Lowering::call_function(const FunctionRef& function, std::vector<CallArgum
 Typed Lowering::call_user(const FunctionRef& function, std::vector<CallArgument>& arguments, const Span& span) {
   const FunctionStmt& definition = *function.definition;
 
-  // No recursion: a function is lowered into its caller, so it cannot be its own caller.
+  // No recursion: a function is lowered into its caller, so it cannot be its own caller. With another function as its
+  // argument it is another function: smooth(f, p) may be called inside an f that is itself smoothed.
+  std::vector<Typed> functions;
+  for (const CallArgument& argument : arguments)
+    if (argument.value.kind == Kind::function) functions.push_back(argument.value);
   int calls = 0;
   for (const Call* call = call_; call; call = call->caller) {
     ++calls;
-    if (call->definition == &definition) {
-      error("recursion", span, "`" + definition.name + "` calls itself" +
-                                   (call == call_ ? std::string() : " through `" + call_->definition->name + "`"),
+    if (call->definition == &definition &&
+        std::equal(functions.begin(), functions.end(), call->functions.begin(), call->functions.end(), same_shape)) {
+      error("recursion", span,
+            "`" + definition.name + "` calls itself" +
+                (call == call_ ? std::string() : " through `" + call_->definition->name + "`"),
             "functions cannot be recursive; use a loop");
       return {};
     }
@@ -93,6 +101,7 @@ Typed Lowering::call_user(const FunctionRef& function, std::vector<CallArgument>
   inner.body = &definition.body;
   inner.caller = call_;
   inner.call_span = span;
+  inner.functions = std::move(functions);
   std::size_t place = 0;
   for (CallArgument& argument : arguments) {
     std::string parameter = argument.name;

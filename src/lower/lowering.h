@@ -26,6 +26,7 @@ struct Call {
   ModuleScope* scope = nullptr;
   const lang::Block* body = nullptr;
   Variables variables;
+  std::vector<Typed> functions;  // the functions among the arguments
   Call* caller = nullptr;
   Span call_span;
 };

@@ -99,6 +99,12 @@ TEST(Values, FunctionsAreMadeForTheTypesTheyAreCalledWith) {
   EXPECT_EQ(value("function outer(x)\n  return x * Scale\nScale = 3\na = outer(2)"), Values{6});
 }
 
+TEST(Values, AFunctionMayBeUsedInsideTheFunctionItIsGiven) {
+  EXPECT_EQ(value("function twice(f, x)\n  return f(f(x))\nfunction inc(x)\n  return x + 1\n"
+                  "function add_two(x)\n  return twice(inc, x)\na = twice(add_two, 1)"),
+            Values{5});
+}
+
 TEST(Values, EarlyReturns) {
   const std::string text =
       "function f(x)\n  if x < 0\n    return -1\n  if x > 10 return 1\n  for i in [1 .. 10]\n    if i * i > x\n"

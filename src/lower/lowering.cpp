@@ -19,7 +19,11 @@ Lowering::Lowering(SourceMap& sources, const LowerHost& host, const LowerOptions
 // ---- Reports and limits -----------------------------------------------------------------------------------------
 
 void Lowering::error(const char* code, const Span& span, std::string message, std::string suggestion) {
-  // Inside a library function the user's own call is the place to look at.
+  // In another file's function, the program's own call is the place to look at next.
+  const Call* call = span.valid() && span.file != main_.file ? call_ : nullptr;
+  while (call && call->call_span.file != main_.file) call = call->caller;
+  if (call && call->call_span.valid())
+    suggestion += (suggestion.empty() ? "called from " : "; called from ") + sources_.describe(call->call_span);
   diagnostics_->error(code, span, std::move(message), std::move(suggestion));
 }
 

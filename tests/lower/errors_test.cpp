@@ -41,6 +41,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"a = point.w", "1:unknown-component: a vector of 3 has no component `w`"},
         Case{"function f(x, x)\n  return x\na = f(1, 2)", "1:parameter-twice: `f` has two parameters named `x`"},
         Case{"function f(x)\n  return x\nfunction f(y)\n  return y\na = f(1)", "3:function-twice: function `f` is defined twice"},
+        Case{"a = 1\nb = turbulence_octaves(\"fast\")", "(called from test.pse:2:5)"},
         Case{"return 3", "1:return-outside: `return` outside a function"},
         Case{"break", "1:not-in-loop: `break` outside a loop"},
         Case{"import nothing_here", "1:unknown-module: there is no module `nothing_here`"},

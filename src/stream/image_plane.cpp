@@ -35,9 +35,8 @@ struct Place {
   double x, y, z;
 };
 
-// The sample of pixel (column, row) in the plane, before any transform.
-Place plane_place(const ImagePlane& plane, int column, int row) {
-  const double px = column + plane.sample_x, py = row + plane.sample_y;
+// Place (px, py) of the picture in the plane, before any transform.
+Place plane_place(const ImagePlane& plane, double px, double py) {
   return {(2 * px - plane.width) / plane.height, (plane.height - 2 * py) / plane.height, 0};
 }
 
@@ -49,8 +48,8 @@ Place transformed(const PlaneTransform& m, const Place& p) {
   return {row(0) / w, row(1) / w, row(2) / w};
 }
 
-double coordinate(const ImagePlane& plane, Coordinate which, int column, int row) {
-  const double px = column + plane.sample_x, py = row + plane.sample_y;
+// The coordinate at a place in pixels of the whole picture.
+double coordinate_at(const ImagePlane& plane, Coordinate which, double px, double py) {
   switch (which) {
     case Coordinate::u:
       return px / plane.width;
@@ -63,11 +62,16 @@ double coordinate(const ImagePlane& plane, Coordinate which, int column, int row
     default:
       break;
   }
-  Place place = plane_place(plane, column, row);
+  Place place = plane_place(plane, px, py);
   if (plane.transform) place = transformed(*plane.transform, place);
   if (which == Coordinate::x || which == Coordinate::point_x) return place.x;
   if (which == Coordinate::y || which == Coordinate::point_y) return place.y;
   return place.z;
+}
+
+// The coordinate at the sample of pixel (column, row).
+double coordinate(const ImagePlane& plane, Coordinate which, int column, int row) {
+  return coordinate_at(plane, which, column + plane.sample_x, row + plane.sample_y);
 }
 
 bool varies_along_row(Coordinate which) {
@@ -114,6 +118,28 @@ void fill_everywhere(const ImagePlane& plane, const PlaneInput& input, const Til
 bool is_transformed(Coordinate which) {
   return which == Coordinate::x || which == Coordinate::y || which >= Coordinate::point_x;
 }
+
+// The plane at any places.
+class PlaneSamples : public SampleSource {
+ public:
+  PlaneSamples(const ir::Module& module, const ImagePlane& plane)
+      : plane_(plane), inputs_(find_plane_inputs(module)) {}
+
+  void fill(std::span<const double> x, std::span<const double> y,
+            std::span<float* const> planes) const override {
+    for (const PlaneInput& input : inputs_) {
+      float* out = planes[input.input];
+      if (out == nullptr) continue;
+      for (std::size_t i = 0; i < x.size(); ++i)
+        out[i] = static_cast<float>(coordinate_at(plane_, input.coordinate, x[i], y[i]));
+    }
+  }
+  bool anywhere() const override { return true; }
+
+ private:
+  const ImagePlane plane_;
+  const std::vector<PlaneInput> inputs_;
+};
 
 }  // namespace
 
@@ -184,6 +210,11 @@ TileSource image_plane_source(const ir::Module& module, const ImagePlane& plane,
     for (const Axis& axis : tables->axes) fill_axis(axis, window, tile);
     for (const PlaneInput& input : tables->others) fill_everywhere(plane, input, tile);
   };
+}
+
+std::unique_ptr<SampleSource> image_plane_samples(const ir::Module& module,
+                                                  const ImagePlane& plane) {
+  return std::make_unique<PlaneSamples>(module, plane);
 }
 
 }  // namespace pse

@@ -6,11 +6,13 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "stream/executor.h"
+#include "stream/sample_source.h"
 
 namespace pse {
 
@@ -43,5 +45,9 @@ void set_plane_uniforms(const ir::Module& module, const ImagePlane& plane, Frame
 // the others alone.
 TileSource image_plane_source(const ir::Module& module, const ImagePlane& plane,
                               const Rect& window);
+
+// The same inputs at any places of the picture; at pixel centres the same bits.
+std::unique_ptr<SampleSource> image_plane_samples(const ir::Module& module,
+                                                  const ImagePlane& plane);
 
 }  // namespace pse

@@ -57,6 +57,31 @@ TEST(ImagePlane, ATransformMovesTheSceneAndNotThePixels) {
   EXPECT_FALSE(plane_transform({1, 2, 3}));
 }
 
+TEST(ImagePlane, SamplesAnywhereAreThePixelsAtTheirCentresAndLieBetweenThemElsewhere) {
+  ir::Module module;
+  for (const std::string& name : coordinates) module.inputs.push_back({name});
+  const ImagePlane plane{
+      .width = 7, .height = 5, .transform = plane_transform({2, 1, 10, .1, 2, 20})};
+  const std::unique_ptr<SampleSource> source = image_plane_samples(module, plane);
+  EXPECT_TRUE(source->anywhere());
+  const std::vector<double> x = {3.5, 4.5, 4, -2}, y = {2.5, 2.5, 2.5, 9};
+  std::vector<std::vector<float>> values(coordinates.size(), std::vector<float>(x.size(), -99));
+  std::vector<float*> planes;
+  for (std::vector<float>& value : values) planes.push_back(value.data());
+  planes[1] = nullptr;  // not wanted
+  source->fill(x, y, planes);
+  const std::vector<float> left = at(plane, 3, 2), right = at(plane, 4, 2);
+  for (std::size_t k = 0; k < coordinates.size(); ++k) {
+    if (k == 1) continue;
+    EXPECT_EQ(values[k][0], left[k]) << coordinates[k];
+    EXPECT_EQ(values[k][1], right[k]) << coordinates[k];
+    EXPECT_NEAR(values[k][2], (left[k] + right[k]) / 2, 1e-5) << coordinates[k];
+  }
+  EXPECT_EQ(values[1], (std::vector<float>{-99, -99, -99, -99}));
+  EXPECT_EQ(values[4][3], -2);  // outside of the picture there are places too
+  EXPECT_EQ(values[5][3], 9);
+}
+
 TEST(ImagePlane, FrameValues) {
   ir::Module module;
   for (const char* name : {"frame", "time", "fps", "width", "height", "aspect", "pixelsize",

@@ -347,6 +347,26 @@ TEST_F(Render, TexturesAreFoundBesideTheProgramAndOnThePath) {
   EXPECT_EQ(picture("a.exr").at(picture("a.exr").spec.find("R"), 3, 1), 0.875f);
 }
 
+TEST_F(Render, AnEnvironmentIsSeenInItsDirections) {
+  // A sky whose red grows with longitude and green with latitude; the middle of the picture is +z.
+  file("sky.pse", "color = [u v 0]\n");
+  ASSERT_EQ(pse({"render", "sky.pse", "-o", "sky.exr", "--res", "64x32", "--float"}).status, 0);
+  file("a.pse",
+       "d = px < 1 ? [0 0 1] : px < 2 ? [1 0 0] : [0 0.70710678 -0.70710678]\n"
+       "color = environment(\"sky.exr\", d)\nblurred = environment(\"sky.exr\", d, 0.1)\n");
+  const Ended ended = pse({"render", "a.pse", "-o", "a.exr", "--res", "3x1", "--float"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const image::Image seen = picture("a.exr");
+  const auto red = [&](int x) { return seen.at(seen.spec.find("R"), x, 0); };
+  const auto green = [&](int x) { return seen.at(seen.spec.find("G"), x, 0); };
+  EXPECT_NEAR(red(0), 0.5, 0.01);
+  EXPECT_NEAR(green(0), 0.5, 0.02);
+  EXPECT_NEAR(red(1), 0.75, 0.01);
+  EXPECT_NEAR(green(1), 0.5, 0.02);
+  EXPECT_NEAR(green(2), 0.75, 0.02);
+  EXPECT_NEAR(seen.at(seen.spec.find("blurred.X"), 1, 0), 0.75, 0.02);
+}
+
 TEST_F(Render, ModulesAreFoundBesideTheProgramAndOnThePath) {
   file("a.pse", "import shades\ncolor = shade(u)\n");
   const std::vector<std::string> words = {"render", "a.pse", "-o", "a.exr", "--res", "2x2"};

@@ -11,6 +11,7 @@ Typed Lowering::lower_call(const CallExpr& call, const Span& span) {
   // The callee: a function by name, a variable that holds one, or one of a named module.
   std::string name;
   std::optional<FunctionRef> function;
+  bool passed = false;  // the caller passed it in
   if (const auto* callee = std::get_if<NameExpr>(&call.callee->node)) {
     name = callee->name;
     auto bound = call_->variables.find(name);
@@ -20,9 +21,10 @@ Typed Lowering::lower_call(const CallExpr& call, const Span& span) {
       is_bound = bound != top_.variables.end();
     }
     // A name may be both a value and a function (`fire = fire(p)`): a value cannot be called, so the function is meant.
-    if (is_bound && bound->second.kind == Kind::function)
+    if (is_bound && bound->second.kind == Kind::function) {
       function = bound->second.function;
-    else if (!(is_bound && bound->second.is_error()))
+      passed = true;
+    } else if (!(is_bound && bound->second.is_error()))
       function = find_function(name, call_->scope);
     if (!function && is_bound) {
       if (!bound->second.is_error())
@@ -58,6 +60,14 @@ Typed Lowering::lower_call(const CallExpr& call, const Span& span) {
     }
   }
   if (failed) return {};
+  // A function that was passed in takes of what it is called with as much as it asks for, so that a
+  // marcher may offer point, normal and eye to a colour that needs only the point.
+  if (passed && function->definition) {
+    std::size_t room = function->definition->parameters.size();
+    std::erase_if(arguments, [&](const CallArgument& argument) {
+      return argument.name.empty() && (room == 0 || room-- == 0);
+    });
+  }
   builder_->set_span(span);
   return call_function(*function, std::move(arguments), span, name);
 }

@@ -35,7 +35,12 @@ ProgramInfo examine_program(const std::string& name, Session& session) {
                    std::move(lowered.outputs),
                    std::move(lowered.reads),
                    {}};
-  info.operations = count_operations(passes::run_pipeline(std::move(lowered.module)));
+  count_written("lower", lowered.module, info.operations);
+  const passes::PipelineOptions pipeline{
+      .optimize = true, .after_pass = [&](std::string_view pass, const ir::Module& module) {
+        count_written(pass, module, info.operations);
+      }};
+  count_compiled(passes::run_pipeline(std::move(lowered.module), pipeline), info.operations);
   return info;
 }
 
@@ -53,8 +58,7 @@ std::string program_text(const ProgramInfo& info) {
                   info.reads.empty() ? "nothing" : fmt::format("{}", fmt::join(info.reads, " ")));
   out += fmt::format("  sets        {}\n",
                      sets.empty() ? "nothing" : fmt::format("{}", fmt::join(sets, " ")));
-  out += fmt::format("  operations  {} constant, {} per frame, {} per sample\n",
-                     info.operations.constant, info.operations.frame, info.operations.sample);
+  out += operations_text(info.operations, "  ");
   return out + knob_help(info.knobs);
 }
 
@@ -89,9 +93,12 @@ Json program_json(const ProgramInfo& info) {
           {"sets", outputs},
           {"knobs", knobs},
           {"operations",
-           {{"constant", info.operations.constant},
-            {"frame", info.operations.frame},
-            {"sample", info.operations.sample}}}};
+           {{"written",
+             {{"constant", info.operations.written[0]},
+              {"frame", info.operations.written[1]},
+              {"sample", info.operations.written[2]}}},
+            {"compiled",
+             {{"frame", info.operations.frame}, {"sample", info.operations.sample}}}}}};
 }
 
 image::ImageSpec examine_image(const std::string& file) {

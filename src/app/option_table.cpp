@@ -137,7 +137,7 @@ std::vector<OptionSpec> render_options() {
        "stats",
        optional,
        "FORMAT",
-       "report times, operations and memory; `--stats=json` for JSON on standard output",
+       "report times, operations by rate, and memory; `--stats=json` for JSON on standard output",
        {"text", "json"}},
       {"",
        "progress",
@@ -203,7 +203,7 @@ const std::vector<CommandSpec>& table() {
        "FILE...",
        "tell what is in a program or an image",
        "For a program: what it reads and sets, its knobs, and how many operations are computed "
-       "once, once per frame and "
+       "when compiling, once per frame and "
        "once per sample. For an image: size, channels, layers and provenance.",
        Offer::file,
        {json, include, quiet, help},

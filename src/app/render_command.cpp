@@ -88,7 +88,7 @@ Exit render_command(Session& session) {
   Diagnostics diagnostics;
   Diagnostics ignored;  // compile() parses again and reports
   const lang::Program tree = lang::parse(program.sources, program.file, ignored);
-  const CompileOptions compile_with = compile_options(options, images, settings, tree);
+  CompileOptions compile_with = compile_options(options, images, settings, tree);
   LowerHost host = module_host(program.path, session);
   Textures textures(session, program.path, options.write.working);
   textures.answer(host);
@@ -98,6 +98,11 @@ Exit render_command(Session& session) {
     report(diagnostics, program.sources, session);
     return Exit::ok;
   }
+  OperationCounts operations;
+  if (!stats.empty())
+    compile_with.after_pass = [&](std::string_view pass, const ir::Module& module) {
+      count_written(pass, module, operations);
+    };
   const auto compiled = compile(program.sources, program.file, host, compile_with, diagnostics);
   report(diagnostics, program.sources, session);
   if (!compiled) return Exit::program;
@@ -111,6 +116,7 @@ Exit render_command(Session& session) {
   const Exit exit = job.run();
   if (!stats.empty()) {
     RunStats numbers = job.stats();
+    numbers.operations.written = operations.written;
     numbers.total_seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (stats == "json")

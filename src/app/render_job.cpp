@@ -82,8 +82,9 @@ RenderJob::RenderJob(Session& session, const RenderOptions& options, const Sourc
             .seed = options_.seed,
             .transform = options_.transform};
   window_ = choose_window();
+  count_operations_ = session.arguments.has("stats");
   stats_.compile = program_->times;
-  stats_.operations = count_operations(*program_->split);
+  count_compiled(*program_->split, stats_.operations);
   stats_.width = program_->kernel->width();
   stats_.threads = thread_count(options_.threads);
   image::set_codec_threads(stats_.threads);
@@ -159,6 +160,8 @@ Exit RenderJob::run_frame(int index, int frame) {
   if (result.end == RunEnd::cancelled) return Exit::running;
   ++stats_.frames;
   stats_.samples += double(window_.width()) * window_.height();
+  if (count_operations_ && index == 0)
+    count_run(*program_, frame_state(), source, window_, status_, stats_.operations);
 
   // Put the files in their places.
   for (const std::string& name : writer.close())

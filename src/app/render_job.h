@@ -56,6 +56,7 @@ class RenderJob {
   Progress progress_;
   std::vector<std::string> warned_;  // variables whose NaN has been reported
   RunStats stats_;
+  bool count_operations_ = false;  // --stats: some samples are run a second time and counted
 };
 
 // The frames to compute: those asked for, those that an input sequence has, or one.

@@ -11,17 +11,6 @@
 namespace pse::app {
 namespace {
 
-bool is_constant(ir::Op op) {
-  return op == ir::Op::const_f32 || op == ir::Op::const_i32 || op == ir::Op::const_bool;
-}
-
-void count(const ir::Region& region, int& constant, int& others) {
-  for (const ir::Instruction& instruction : region.body) {
-    ++(is_constant(instruction.op) ? constant : others);
-    for (const ir::Region& inner : instruction.regions) count(inner, constant, others);
-  }
-}
-
 // The most memory that the process ever had resident.
 double peak_bytes() {
   rusage usage{};
@@ -31,12 +20,16 @@ double peak_bytes() {
 
 }  // namespace
 
-OperationCounts count_operations(const passes::SplitModule& split) {
-  OperationCounts counts;
-  for (std::uint32_t i = 0; i < split.module.functions.size(); ++i)
-    count(split.module.functions[i].body, counts.constant,
-          i == split.frame ? counts.frame : counts.sample);
-  return counts;
+std::string operations_text(const OperationCounts& counts, std::string_view indent) {
+  std::string out = fmt::format("{}operations    per constant  per frame  per sample\n", indent);
+  out += fmt::format("{}  written     {:>12}  {:>9}  {:>10}\n", indent, counts.written[0],
+                     counts.written[1], counts.written[2]);
+  out += fmt::format("{}  compiled    {:>12}  {:>9}  {:>10}\n", indent, "-", counts.frame,
+                     counts.sample);
+  if (counts.samples_looked_at > 0)
+    out += fmt::format("{}  run         {:>12}  {:>9.0f}  {:>10.1f}\n", indent, "-",
+                       counts.frame_run, counts.sample_run);
+  return out;
 }
 
 std::string stats_text(const RunStats& s) {
@@ -47,8 +40,7 @@ std::string stats_text(const RunStats& s) {
                   human_seconds(compile), human_seconds(s.compile.parse),
                   human_seconds(s.compile.lower), human_seconds(s.compile.passes),
                   human_seconds(s.compile.codegen), s.compile.from_cache ? " from the cache" : "");
-  out += fmt::format("operations    {} constant, {} per frame, {} per sample\n",
-                     s.operations.constant, s.operations.frame, s.operations.sample);
+  out += operations_text(s.operations, "");
   out += fmt::format("samples       {:.0f} in {} frame{}\n", s.samples, s.frames,
                      s.frames == 1 ? "" : "s");
   if (s.compute_seconds > 0)
@@ -71,9 +63,15 @@ std::string stats_json(const RunStats& s) {
         {"codegen", s.compile.codegen},
         {"from_cache", s.compile.from_cache}}},
       {"operations",
-       {{"constant", s.operations.constant},
-        {"frame", s.operations.frame},
-        {"sample", s.operations.sample}}},
+       {{"written",
+         {{"constant", s.operations.written[0]},
+          {"frame", s.operations.written[1]},
+          {"sample", s.operations.written[2]}}},
+        {"compiled", {{"frame", s.operations.frame}, {"sample", s.operations.sample}}},
+        {"run",
+         {{"frame", s.operations.frame_run},
+          {"sample", s.operations.sample_run},
+          {"samples_looked_at", s.operations.samples_looked_at}}}}},
       {"frames", s.frames},
       {"samples", s.samples},
       {"samples_per_second", s.compute_seconds > 0 ? s.samples / s.compute_seconds : 0.0},

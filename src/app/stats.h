@@ -3,15 +3,10 @@
 
 #include <string>
 
+#include "app/operations.h"
 #include "stream/program.h"
 
 namespace pse::app {
-
-// Instructions of a compiled module by how often they run; loops count once.
-struct OperationCounts {
-  int constant = 0, frame = 0, sample = 0;
-};
-OperationCounts count_operations(const passes::SplitModule& split);
 
 struct RunStats {
   CompileTimes compile;
@@ -24,6 +19,8 @@ struct RunStats {
   double total_seconds = 0;
 };
 
+// The operations as a table of a line each for written, compiled and run, each line indented.
+std::string operations_text(const OperationCounts& counts, std::string_view indent);
 std::string stats_text(const RunStats& stats);
 std::string stats_json(const RunStats& stats);
 

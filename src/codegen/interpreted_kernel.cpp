@@ -72,8 +72,9 @@ ir::ExternalCallback external_caller(const FrameState& state) {
 
 class InterpretedKernel final : public Kernel {
  public:
-  explicit InterpretedKernel(std::shared_ptr<const passes::SplitModule> split)
-      : split_(std::move(split)) {}
+  explicit InterpretedKernel(std::shared_ptr<const passes::SplitModule> split,
+                             OperationCounter* counter = nullptr)
+      : split_(std::move(split)), counter_(counter) {}
 
   int width() const override { return 1; }
 
@@ -94,7 +95,9 @@ class InterpretedKernel final : public Kernel {
                                       .external = &external,
                                       .cancel = &status.cancel};
     std::vector<ir::Bits> slots(function.body.yields.size());
-    const ir::Outcome outcome = ir::Interpreter(module).run(split_->frame, {}, environment, slots);
+    ir::Interpreter interpreter(module);
+    const ir::Outcome outcome = interpreter.run(split_->frame, {}, environment, slots);
+    if (counter_ != nullptr) counter_->frame += interpreter.operations();
     // Slots keep their bits as they are: they may carry an integer.
     for (std::size_t i = 0; i < slots.size(); ++i)
       state.uniforms[split_->first_slot + i] = ir::to_f32(slots[i]);
@@ -131,6 +134,7 @@ class InterpretedKernel final : public Kernel {
       begin_sample(arrays, places);
 
       const ir::Outcome outcome = interpreter.run(module.entry, {}, environment, results);
+      if (counter_ != nullptr) counter_->sample += interpreter.operations();
       if (outcome.end == ir::End::failed_check)
         fail(status, outcome.check, static_cast<std::uint32_t>(sample));
       if (outcome.end != ir::End::finished) return;
@@ -147,12 +151,18 @@ class InterpretedKernel final : public Kernel {
   }
 
   std::shared_ptr<const passes::SplitModule> split_;
+  OperationCounter* counter_;
 };
 
 }  // namespace
 
 std::unique_ptr<Kernel> make_interpreted_kernel(std::shared_ptr<const passes::SplitModule> split) {
   return std::make_unique<InterpretedKernel>(std::move(split));
+}
+
+std::unique_ptr<Kernel> make_counting_kernel(std::shared_ptr<const passes::SplitModule> split,
+                                             OperationCounter& counter) {
+  return std::make_unique<InterpretedKernel>(std::move(split), &counter);
 }
 
 }  // namespace pse

@@ -66,6 +66,14 @@ class Kernel {
 // against.
 std::unique_ptr<Kernel> make_interpreted_kernel(std::shared_ptr<const passes::SplitModule> split);
 
+// Operations carried out while a kernel ran: all its frames, all its samples.
+struct OperationCounter {
+  std::atomic<std::uint64_t> frame{0}, sample{0};
+};
+// The same, counting; `counter` must live as long as the kernel.
+std::unique_ptr<Kernel> make_counting_kernel(std::shared_ptr<const passes::SplitModule> split,
+                                             OperationCounter& counter);
+
 struct CodegenOptions {
   int width = 0;    // 1, 4, 8, 16, 32; 0: what this processor does best with this program
   std::string cpu;  // a name of codegen/target.h; empty: this processor

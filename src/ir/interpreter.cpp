@@ -38,6 +38,7 @@ Outcome Interpreter::run(std::uint32_t function, std::span<const Bits> arguments
   entered_ = &module_->functions[function];
   turns_left_ = environment.max_turns;
   outcome_ = {};
+  operations_ = 0;
   enter(function);
   Frame& frame = frames_[function];
   const Region& body = entered_->body;
@@ -59,6 +60,7 @@ bool Interpreter::stop(End end, std::int32_t check) {
 
 bool Interpreter::run_region(const Region& region, Frame& frame) {
   for (const Instruction& in : region.body) {
+    operations_ += in.op > Op::input ? 1 : 0;
     if (is_scalar(in.op)) {
       const Value* operand = in.operands.data();
       const std::size_t count = in.operands.size();

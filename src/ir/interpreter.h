@@ -64,6 +64,9 @@ class Interpreter {
   // `results` gets the function's yields as they are (NaN as computed) where the run finished.
   Outcome run(std::uint32_t function, std::span<const Bits> arguments,
               const Environment& environment, std::span<Bits> results);
+  // Operations that the last run carried out, every turn of a loop counted; without constants and
+  // inputs, as count_by_rate() counts (ir/count.h).
+  std::uint64_t operations() const { return operations_; }
 
  private:
   using Frame = std::vector<Bits>;
@@ -84,6 +87,7 @@ class Interpreter {
   std::vector<float> external_arguments_;
   std::vector<float> external_results_;
   std::uint64_t turns_left_ = 0;
+  std::uint64_t operations_ = 0;
   Outcome outcome_;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "run_pse.h"
@@ -281,6 +282,35 @@ TEST_F(Render, Statistics) {
     EXPECT_TRUE(contains(ended.err, part));
   ended = pse({"render", "a.pse", "--stats=json", "--res", "64x64"});
   EXPECT_TRUE(contains(ended.out, "\"samples\": 4096"));
+}
+
+TEST_F(Render, OperationsByRate) {
+  const auto count = [&](const std::string& part) {
+    const Ended ended = pse({"render", "a.pse", "--stats=json", "--res", "64x64"});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    const nlohmann::json numbers = nlohmann::json::parse(ended.out);
+    return numbers["operations"].at(nlohmann::json::json_pointer(part)).get<double>();
+  };
+  // sqrt(2) * 3 + 1 is worked out when compiling; a product and a sum hold for the frame. Straight
+  // code runs what is compiled.
+  file("a.pse", "k = sqrt(2) * 3 + 1\nheat = x * (2 * frame + k) + y * y\n");
+  EXPECT_EQ(count("/written/constant"), 3);
+  EXPECT_EQ(count("/written/frame"), 2);
+  EXPECT_EQ(count("/written/sample"), 3);
+  EXPECT_EQ(count("/compiled/frame"), 2);
+  EXPECT_EQ(count("/compiled/sample"), 3);
+  EXPECT_EQ(count("/run/frame"), 2);
+  EXPECT_EQ(count("/run/sample"), 3);
+  EXPECT_EQ(count("/run/samples_looked_at"), 64);
+  // Where half of the samples turn a loop more often, the average shows it.
+  const std::string loop = "t = 0\nwhile t < (x > 0 ? Turns : 1)\n    t += 1\nheat = t\n";
+  file("a.pse", "Turns = 11\n" + loop);
+  const double few = count("/run/sample");
+  file("a.pse", "Turns = 61\n" + loop);
+  const double many = count("/run/sample");
+  file("a.pse", "Turns = 111\n" + loop);
+  EXPECT_EQ(count("/run/sample") - many, many - few);
+  EXPECT_GE(many - few, 50);
 }
 
 TEST_F(Render, ProgressAsJsonAndPlain) {

@@ -1,0 +1,45 @@
+// Where the eye is and what it sees: places in the picture to rays.
+#pragma once
+
+#include "surface/shape.h"
+
+namespace pse::surface {
+
+struct Camera {
+  Vec3 eye{0, 0, 5}, target, up{0, 1, 0};
+  double fov = 30;     // degrees from the picture's bottom to its top
+  double height = 0;   // orthographic where not 0: metres from bottom to top
+};
+
+// A camera that shows all of a box from the front, a little from above and from the right.
+Camera framing(const Box& box, double aspect);
+
+// A camera for pictures of one size. `eye` and `target` differ, `up` is not parallel to the view.
+class Lens {
+ public:
+  Lens(const Camera& camera, int width, int height);
+
+  // Through the place (x, y) in pixels from the top left corner; the direction has length 1.
+  Ray ray(double x, double y) const;
+  // How far in front of the eye's plane a point of that ray at distance t lies.
+  double depth(const Ray& ray, double t) const {
+    return t * dot(ray.direction, forward_) + dot(ray.origin - eye_, forward_);
+  }
+  // A pixel's width at distance t along the ray.
+  double width(const Ray& ray, double t) const {
+    return parallel_ ? pixel_ : pixel_ * t * dot(ray.direction, forward_);
+  }
+  double pixel_angle() const { return pixel_; }
+  const Vec3& eye() const { return eye_; }
+  const Vec3& right() const { return right_; }
+  const Vec3& up() const { return up_; }
+
+ private:
+  Vec3 eye_, forward_, right_, up_;
+  double width_, height_;
+  double scale_;  // half the picture's height at distance 1, or in metres
+  double pixel_;
+  bool parallel_;
+};
+
+}  // namespace pse::surface

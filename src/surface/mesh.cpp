@@ -1,0 +1,121 @@
+// Reading a mesh, and a mesh as a shape. The tree says which triangle a ray meets; where it meets it
+// is computed here in double, so that the hit does not depend on how the tree found it.
+#include "surface/mesh.h"
+
+#include <filesystem>
+
+#include "image/module_loader.h"
+#include "surface/mesh_file.h"
+
+namespace pse::surface {
+namespace {
+
+std::expected<const MeshTools*, std::string> mesh_tools() {
+  static const std::expected<const MeshTools*, std::string> tools =
+      []() -> std::expected<const MeshTools*, std::string> {
+    const auto entry = image::load_module("pse_mesh_tools", mesh_tools_entry);
+    if (!entry) return std::unexpected("meshes cannot be used: " + entry.error().message);
+    return reinterpret_cast<MeshToolsEntry>(*entry)();
+  }();
+  return tools;
+}
+
+void fit(Mesh& mesh) {
+  const Box box = mesh.bounds();
+  const Vec3 size = box.upper - box.lower, centre = box.centre();
+  const double scale = 2 / std::max({size.x, size.y, size.z, 1e-30});
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    mesh.positions[i] =
+        static_cast<float>((mesh.positions[i] - centre[static_cast<int>(i % 3)]) * scale);
+}
+
+class MeshShape : public Shape {
+ public:
+  MeshShape(std::shared_ptr<const Mesh> mesh, std::unique_ptr<const TriangleTree> tree)
+      : mesh_(std::move(mesh)), tree_(std::move(tree)), bounds_(mesh_->bounds()) {}
+  Box bounds() const override { return bounds_; }
+
+  void intersect(std::span<const Ray> rays, std::span<ShapeHit> hits) const override {
+    std::vector<TriangleHit> found(rays.size());
+    tree_->first(rays, found);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (found[i].triangle != TriangleHit::no_triangle) fill(rays[i], found[i].triangle, hits[i]);
+  }
+
+ private:
+  void fill(const Ray& ray, std::uint32_t triangle, ShapeHit& hit) const {
+    const std::uint32_t* corner = &mesh_->triangles[3 * std::size_t{triangle}];
+    const Vec3 a = mesh_->position(corner[0]), ab = mesh_->position(corner[1]) - a,
+               ac = mesh_->position(corner[2]) - a;
+    const Vec3 flat = cross(ab, ac), from = ray.origin - a;
+    const double along = dot(flat, ray.direction);
+    if (along == 0) return;
+    const double t = -dot(flat, from) / along;
+    if (!(t > ray.begin && t < ray.end)) return;
+    // Where in the triangle; on its edge where rounding went beyond.
+    const Vec3 q = cross(from, ray.direction);
+    double v = std::clamp(dot(ac, q) / along, 0.0, 1.0);
+    double w = std::clamp(-dot(ab, q) / along, 0.0, 1.0);
+    if (v + w > 1) v /= v + w, w = 1 - v;
+    const double u = 1 - v - w;
+    hit.t = t;
+    hit.flat = hit.normal = flat;
+    const auto mixed = [&](const std::vector<float>& values, std::size_t stride, std::size_t k) {
+      return u * values[stride * corner[0] + k] + v * values[stride * corner[1] + k] +
+             w * values[stride * corner[2] + k];
+    };
+    if (!mesh_->normals.empty()) {
+      const Vec3 smooth{mixed(mesh_->normals, 3, 0), mixed(mesh_->normals, 3, 1),
+                        mixed(mesh_->normals, 3, 2)};
+      if (dot(smooth, smooth) > 1e-12) hit.normal = smooth;
+      // The side that the normals call outside is the outside.
+      if (dot(hit.normal, flat) < 0) hit.flat = -flat;
+    }
+    if (!mesh_->uvs.empty()) hit.u = mixed(mesh_->uvs, 2, 0), hit.v = mixed(mesh_->uvs, 2, 1);
+  }
+
+  std::shared_ptr<const Mesh> mesh_;
+  std::unique_ptr<const TriangleTree> tree_;
+  Box bounds_;
+};
+
+}  // namespace
+
+Box Mesh::bounds() const {
+  Box box;
+  for (std::size_t v = 0; v < vertex_count(); ++v)
+    box.add(position(static_cast<std::uint32_t>(v)));
+  return box;
+}
+
+std::expected<LoadedMesh, std::string> load_mesh(const std::string& file,
+                                                 const MeshOptions& options) {
+  if (const std::string problem = look_at_mesh_file(file, options.most_triangles);
+      !problem.empty())
+    return std::unexpected(file + ": " + problem);
+  const auto tools = mesh_tools();
+  if (!tools) return std::unexpected(tools.error());
+  auto mesh = std::make_shared<Mesh>();
+  std::string error;
+  if (!(*tools)->read(file, *mesh, error)) return std::unexpected(file + ": " + error);
+  auto notes = clean_mesh(*mesh);
+  if (!notes) return std::unexpected(file + ": " + notes.error());
+  if (mesh->triangle_count() > options.most_triangles)
+    return std::unexpected(file + ": " + too_many_triangles(mesh->triangle_count(), options.most_triangles));
+  if (options.fit) fit(*mesh);
+  if (mesh->normals.empty()) derive_normals(*mesh, options.crease);
+  for (std::string& note : *notes) note = file + ": " + note;
+  return LoadedMesh{std::move(mesh), std::move(*notes)};
+}
+
+std::expected<std::shared_ptr<const Shape>, std::string> make_mesh_shape(
+    std::shared_ptr<const Mesh> mesh) {
+  const auto tools = mesh_tools();
+  if (!tools) return std::unexpected(tools.error());
+  std::string error;
+  std::unique_ptr<const TriangleTree> tree((*tools)->build(*mesh, error));
+  if (!tree) return std::unexpected(error);
+  return std::make_shared<MeshShape>(std::move(mesh), std::move(tree));
+}
+
+}  // namespace pse::surface

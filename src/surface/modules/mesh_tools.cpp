@@ -1,0 +1,143 @@
+// The module around Assimp and Embree: the only home of both. Loaded by mesh.cpp, on demand.
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <embree3/rtcore.h>
+
+#include <assimp/Importer.hpp>
+#include <cstring>
+
+#include "surface/mesh.h"
+
+namespace pse::surface {
+namespace {
+
+class Tree : public TriangleTree {
+ public:
+  Tree(RTCDevice device, const Mesh& mesh) : device_(device), scene_(rtcNewScene(device)) {
+    rtcRetainDevice(device_);
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    // Copies, since Embree reads 16 bytes at each vertex.
+    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                             RTC_FORMAT_FLOAT3, 12, mesh.vertex_count());
+    void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
+                                              RTC_FORMAT_UINT3, 12, mesh.triangle_count());
+    if (vertices != nullptr && triangles != nullptr) {
+      std::memcpy(vertices, mesh.positions.data(), mesh.positions.size() * sizeof(float));
+      std::memcpy(triangles, mesh.triangles.data(), mesh.triangles.size() * sizeof(std::uint32_t));
+      rtcCommitGeometry(geometry);
+      rtcAttachGeometry(scene_, geometry);
+      rtcCommitScene(scene_);
+    }
+    rtcReleaseGeometry(geometry);
+  }
+  ~Tree() override {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
+
+  // One ray at a time: which triangle is found then depends on the ray alone.
+  void first(std::span<const Ray> rays, std::span<TriangleHit> hits) const override {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Ray& ray = rays[i];
+      RTCIntersectContext context;
+      rtcInitIntersectContext(&context);
+      RTCRayHit query;
+      query.ray.org_x = static_cast<float>(ray.origin.x);
+      query.ray.org_y = static_cast<float>(ray.origin.y);
+      query.ray.org_z = static_cast<float>(ray.origin.z);
+      query.ray.dir_x = static_cast<float>(ray.direction.x);
+      query.ray.dir_y = static_cast<float>(ray.direction.y);
+      query.ray.dir_z = static_cast<float>(ray.direction.z);
+      query.ray.tnear = static_cast<float>(ray.begin);
+      query.ray.tfar = static_cast<float>(ray.end);
+      query.ray.time = 0;
+      query.ray.mask = 0xffffffff;
+      query.ray.id = 0;
+      query.ray.flags = 0;
+      query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(scene_, &context, &query);
+      if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) hits[i].triangle = query.hit.primID;
+    }
+  }
+
+ private:
+  RTCDevice device_;
+  RTCScene scene_;
+};
+
+// All triangles of all meshes of the file, as one mesh in the file's world.
+void append(const aiMesh& from, bool normals, bool uvs, Mesh& to) {
+  const auto base = static_cast<std::uint32_t>(to.vertex_count());
+  for (unsigned v = 0; v < from.mNumVertices; ++v) {
+    const aiVector3D& p = from.mVertices[v];
+    to.positions.insert(to.positions.end(), {p.x, p.y, p.z});
+    if (normals) {
+      const aiVector3D& n = from.mNormals[v];
+      to.normals.insert(to.normals.end(), {n.x, n.y, n.z});
+    }
+    if (uvs) {
+      const aiVector3D& t = from.mTextureCoords[0][v];
+      to.uvs.insert(to.uvs.end(), {t.x, t.y});
+    }
+  }
+  for (unsigned f = 0; f < from.mNumFaces; ++f) {
+    const aiFace& face = from.mFaces[f];
+    if (face.mNumIndices != 3) continue;
+    for (unsigned k = 0; k < 3; ++k) to.triangles.push_back(base + face.mIndices[k]);
+  }
+}
+
+class Tools : public MeshTools {
+ public:
+  bool read(const std::string& file, Mesh& mesh, std::string& error) const override {
+    try {
+      Assimp::Importer importer;
+      const aiScene* scene = importer.ReadFile(
+          file, aiProcess_Triangulate | aiProcess_PreTransformVertices |
+                    aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
+      if (scene == nullptr) {
+        error = std::string("this is not a mesh that can be read: ") + importer.GetErrorString();
+        return false;
+      }
+      bool normals = true, uvs = true;
+      for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
+        const aiMesh& part = *scene->mMeshes[i];
+        if ((part.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) continue;
+        normals = normals && part.HasNormals();
+        uvs = uvs && part.HasTextureCoords(0);
+      }
+      for (unsigned i = 0; i < scene->mNumMeshes; ++i)
+        if ((scene->mMeshes[i]->mPrimitiveTypes & aiPrimitiveType_TRIANGLE) != 0 ||
+            scene->mNumMeshes == 1)
+          append(*scene->mMeshes[i], normals, uvs, mesh);
+      return true;
+    } catch (const std::exception& problem) {
+      error = problem.what();
+      return false;
+    }
+  }
+
+  TriangleTree* build(const Mesh& mesh, std::string& error) const override {
+    static const RTCDevice device = rtcNewDevice(nullptr);
+    if (device == nullptr) {
+      error = "Embree cannot be started";
+      return nullptr;
+    }
+    auto tree = std::make_unique<Tree>(device, mesh);
+    if (rtcGetDeviceError(device) != RTC_ERROR_NONE) {
+      error = "there is not enough memory for the mesh";
+      return nullptr;
+    }
+    return tree.release();
+  }
+};
+
+}  // namespace
+}  // namespace pse::surface
+
+extern "C" __attribute__((visibility("default"))) pse::surface::MeshTools* pse_mesh_tools() {
+  static pse::surface::Tools tools;
+  return &tools;
+}

@@ -1,0 +1,98 @@
+// Isolation by Bernstein coefficients, then Newton's method held in its bracket.
+#include "surface/roots.h"
+
+#include <cmath>
+
+namespace pse::surface {
+namespace {
+
+constexpr int deepest = 40;  // halvings; then a root counts as found
+using Coefficients = std::array<double, most_roots + 1>;
+
+constexpr double binomial(std::size_t n, std::size_t k) {
+  double value = 1;
+  for (std::size_t i = 1; i <= k; ++i) value = value * double(n - k + i) / double(i);
+  return value;
+}
+
+struct Search {
+  const double* power;
+  std::size_t degree;
+  bool first_only;
+  Roots found;
+
+  bool full() const { return found.count == most_roots || (first_only && found.count > 0); }
+
+  void value_and_slope(double x, double& value, double& slope) const {
+    value = power[degree], slope = 0;
+    for (std::size_t i = degree; i-- > 0;) slope = slope * x + value, value = value * x + power[i];
+  }
+
+  // One root lies in [a, b]: the values there differ in sign, or one is 0.
+  void refine(double a, double b) {
+    double value, slope, at_a, ignored;
+    value_and_slope(a, at_a, ignored);
+    double x = 0.5 * (a + b);
+    for (int step = 0; step < 60; ++step) {
+      value_and_slope(x, value, slope);
+      if (value == 0) break;
+      if ((value > 0) == (at_a > 0))
+        a = x;
+      else
+        b = x;
+      double next = slope != 0 ? x - value / slope : a;
+      if (!(next > a && next < b)) next = 0.5 * (a + b);
+      const bool done = std::abs(next - x) <= 1e-15 * std::abs(x) || next == a || next == b;
+      x = next;
+      if (done) break;
+    }
+    found.at[found.count++] = x;
+  }
+
+  void search(const Coefficients& c, double a, double b, int depth) {
+    // Count changes of sign; coefficients of 0 have the sign before them.
+    int changes = 0;
+    double before = 0;
+    for (std::size_t i = 0; i <= degree; ++i) {
+      if (c[i] == 0) continue;
+      if (before != 0 && (before > 0) != (c[i] > 0)) ++changes;
+      before = c[i];
+    }
+    if (changes == 0 || full()) return;
+    if (changes == 1) return refine(a, b);
+    if (depth == deepest) {
+      found.at[found.count++] = 0.5 * (a + b);
+      return;
+    }
+    // Halve, after de Casteljau.
+    Coefficients left{}, right = c;
+    left[0] = c[0];
+    for (std::size_t level = 1; level <= degree; ++level) {
+      for (std::size_t i = 0; i + level <= degree; ++i) right[i] = 0.5 * (right[i] + right[i + 1]);
+      left[level] = right[0];
+    }
+    const double middle = 0.5 * (a + b);
+    search(left, a, middle, depth + 1);
+    if (!full()) search(right, middle, b, depth + 1);
+  }
+};
+
+}  // namespace
+
+Roots roots_in_unit(const double* coefficients, std::size_t degree, bool first_only) {
+  static const auto ratios = [] {
+    std::array<std::array<std::array<double, most_roots + 1>, most_roots + 1>, most_roots + 1> r{};
+    for (std::size_t n = 0; n <= most_roots; ++n)
+      for (std::size_t i = 0; i <= n; ++i)
+        for (std::size_t k = 0; k <= i; ++k) r[n][i][k] = binomial(i, k) / binomial(n, k);
+    return r;
+  }();
+  Coefficients c{};
+  for (std::size_t i = 0; i <= degree; ++i)
+    for (std::size_t k = 0; k <= i; ++k) c[i] += ratios[degree][i][k] * coefficients[k];
+  Search search{coefficients, degree, first_only, {}};
+  search.search(c, 0, 1, 0);
+  return search.found;
+}
+
+}  // namespace pse::surface

@@ -1,0 +1,211 @@
+// Sorting samples by program, running each program on its own, and putting the results back.
+#include "surface/shader.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "stream/planes.h"
+
+namespace pse::surface {
+namespace {
+
+std::string component_name(const ProgramOutput& output, int component) {
+  return output.components == 1 ? output.name : output.name + "." + std::to_string(component);
+}
+
+// Index of the entry called `name`, added where there is none.
+template <class Entry>
+std::size_t index_of(std::vector<Entry>& entries, const Entry& entry) {
+  const auto found = std::find_if(entries.begin(), entries.end(),
+                                  [&](const Entry& e) { return e.name == entry.name; });
+  if (found != entries.end()) return static_cast<std::size_t>(found - entries.begin());
+  entries.push_back(entry);
+  return entries.size() - 1;
+}
+
+}  // namespace
+
+Shader::Shader(std::vector<std::shared_ptr<const Program>> programs, std::vector<int> program_of)
+    : program_of_(std::move(program_of)), split_(std::make_shared<passes::SplitModule>()) {
+  for (auto& program : programs) parts_.push_back({std::move(program), {}, {}, false, 0});
+  make_module();
+}
+
+void Shader::make_module() {
+  ir::Module& module = split_->module;
+  module.functions.resize(2);
+  split_->frame = 1;
+
+  // What is set: a number that another program sets as a vector goes into all its components.
+  for (Part& part : parts_)
+    for (const ProgramOutput& output : part.program->outputs) {
+      ProgramOutput& joined = outputs_[index_of(outputs_, output)];
+      joined.components = std::max(joined.components, output.components);
+    }
+  const std::size_t alpha = index_of(outputs_, ProgramOutput{"alpha", 1, {}});
+  std::vector<std::size_t> first(outputs_.size());
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    first[i] = module.outputs.size();
+    for (int c = 0; c < outputs_[i].components; ++c)
+      module.outputs.push_back({component_name(outputs_[i], c)});
+    if (outputs_[i].name == "color" || (outputs_[i].name == "colour" && !has_color_)) {
+      has_color_ = true;
+      for (std::size_t c = 0; c < 3; ++c)
+        color_outputs_[c] =
+            first[i] + std::min<std::size_t>(c, static_cast<std::size_t>(outputs_[i].components) - 1);
+    }
+  }
+  alpha_output_ = first[alpha];
+  split_->first_slot = 0;
+
+  // What is read, and where each program finds it.
+  module.inputs.push_back({"id", ir::Rate::sample});
+  for (Part& part : parts_) {
+    const ir::Module& own = part.program->module();
+    for (const ir::Input& input : own.inputs)
+      part.input_of.push_back(input.rate == ir::Rate::sample ? index_of(module.inputs, input)
+                                                             : std::size_t(-1));
+    part.outputs_of.resize(own.outputs.size());
+    for (const ProgramOutput& output : part.program->outputs) {
+      const std::size_t joined = index_of(outputs_, output);
+      part.sets_alpha = part.sets_alpha || joined == alpha;
+      for (int c = 0; c < outputs_[joined].components; ++c) {
+        if (output.components > 1 && c >= output.components) break;
+        const std::string name =
+            component_name(output, output.components == 1 ? 0 : c);
+        for (std::size_t o = 0; o < own.outputs.size(); ++o)
+          if (own.outputs[o].name == name)
+            part.outputs_of[o].push_back(first[joined] + static_cast<std::size_t>(c));
+      }
+    }
+    part.first_check = static_cast<std::int32_t>(module.checks.size());
+    module.checks.insert(module.checks.end(), own.checks.begin(), own.checks.end());
+  }
+}
+
+std::shared_ptr<const Program> Shader::combined(std::shared_ptr<Shader> shader) {
+  auto program = std::make_shared<Program>();
+  program->outputs = shader->outputs_;
+  program->split = shader->split_;
+  for (const Part& part : shader->parts_) {
+    for (const Knob& knob : part.program->knobs) index_of(program->knobs, knob);
+    for (const std::string& name : part.program->reads)
+      if (std::find(program->reads.begin(), program->reads.end(), name) == program->reads.end())
+        program->reads.push_back(name);
+    const CompileTimes& times = part.program->times;
+    program->times.parse += times.parse, program->times.lower += times.lower;
+    program->times.passes += times.passes, program->times.codegen += times.codegen;
+    program->times.from_cache = times.from_cache;
+  }
+  program->kernel = std::move(shader);
+  return program;
+}
+
+void Shader::begin_frame(std::vector<FrameState> states, std::shared_ptr<const Scene> scene,
+                         const Lens& lens) {
+  states_ = std::move(states);
+  scene_ = std::move(scene);
+  lens_ = std::make_unique<Lens>(lens);
+  names_ = std::make_unique<NameWriter>(split_->module, scene_, lens);
+  ready_ = false;
+}
+
+int Shader::width() const { return parts_.empty() ? 1 : parts_.front().program->kernel->width(); }
+
+void Shader::run_frame(FrameState& state, RunStatus& status) const {
+  state.uniforms.resize(split_->module.inputs.size());
+  for (std::size_t k = 0; k < parts_.size() && status.failed_check < 0; ++k) {
+    parts_[k].program->kernel->run_frame(states_[k], status);
+    if (status.failed_check >= 0) status.failed_check += parts_[k].first_check;
+  }
+  ready_ = true;
+}
+
+void Shader::run_samples(const FrameState&, RunStatus& status, Scratch&,
+                         const float* const* inputs, float* const* outputs,
+                         std::int64_t count) const {
+  const float* ids = inputs[id_input_];
+  std::vector<std::vector<std::uint32_t>> which(parts_.size());
+  for (std::int64_t i = 0; i < count; ++i) {
+    const float id = ids[i];
+    const bool known = id >= 0 && id < static_cast<float>(program_of_.size());
+    const int part = known ? program_of_[static_cast<std::size_t>(id)] : -1;
+    if (part >= 0) which[static_cast<std::size_t>(part)].push_back(static_cast<std::uint32_t>(i));
+  }
+  for (std::size_t o = 0; o < split_->module.outputs.size(); ++o)
+    std::fill_n(outputs[o], count, 0.0f);
+  for (std::size_t k = 0; k < parts_.size(); ++k)
+    if (!which[k].empty()) run_part(k, status, inputs, outputs, which[k], count);
+}
+
+void Shader::run_part(std::size_t k, RunStatus& status, const float* const* inputs,
+                      float* const* outputs, const std::vector<std::uint32_t>& which,
+                      std::int64_t count) const {
+  const Part& part = parts_[k];
+  const ir::Module& module = part.program->module();
+  const bool all = std::cmp_equal(which.size(), count);
+  const auto samples = static_cast<std::int64_t>(which.size());
+
+  // Gather.
+  std::vector<bool> used(module.inputs.size());
+  for (std::size_t i = 0; i < used.size(); ++i) used[i] = part.input_of[i] != std::size_t(-1);
+  const Planes gathered(all ? std::vector<bool>(used.size(), false) : used, samples);
+  std::vector<const float*> in(used.size(), nullptr);
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (!used[i]) continue;
+    const float* from = inputs[part.input_of[i]];
+    in[i] = from;
+    if (all) continue;
+    float* to = gathered.pointers()[i];
+    for (std::size_t s = 0; s < which.size(); ++s) to[s] = from[which[s]];
+    in[i] = to;
+  }
+
+  // Run.
+  const Planes results(std::vector<bool>(module.outputs.size(), true), samples);
+  Scratch scratch;
+  part.program->kernel->run_samples(states_[k], status, scratch, in.data(),
+                                    results.pointers().data(), samples);
+  if (status.failed_check >= 0) {
+    status.failed_check += part.first_check;
+    status.failed_sample = which[std::min<std::size_t>(status.failed_sample, which.size() - 1)];
+    return;
+  }
+
+  // Scatter.
+  for (std::size_t o = 0; o < module.outputs.size(); ++o)
+    for (const std::size_t to : part.outputs_of[o])
+      for (std::size_t s = 0; s < which.size(); ++s)
+        outputs[to][which[s]] = results.pointers()[o][s];
+  if (!part.sets_alpha)
+    for (const std::uint32_t s : which) outputs[alpha_output_][s] = 1;
+}
+
+void Shader::radiance(std::span<const Ray> rays, double begin_width, float* const* rgba) const {
+  thread_local int depth = 0;
+  const std::size_t n = rays.size();
+  for (int c = 0; c < 4; ++c) std::fill_n(rgba[c], n, 0.0f);
+  if (!ready_ || !has_color_ || depth >= deepest) return;
+
+  std::vector<Hit> hits(n);
+  scene_->trace(rays, hits);
+  std::vector<Sighting> sightings(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double t = hits[i].found() ? hits[i].t : 1;
+    sightings[i] = {rays[i], hits[i], begin_width + lens_->pixel_angle() * t, t};
+  }
+  const ir::Module& module = split_->module;
+  const auto count = static_cast<std::int64_t>(n);
+  const Planes inputs(std::vector<bool>(module.inputs.size(), true), count);
+  names_->write(sightings, inputs.pointers());
+  const Planes outputs(std::vector<bool>(module.outputs.size(), true), count);
+  RunStatus status;
+  Scratch scratch;
+  ++depth;
+  run_samples({}, status, scratch, inputs.pointers().data(), outputs.pointers().data(), count);
+  --depth;
+  for (std::size_t c = 0; c < 4; ++c)
+    std::copy_n(outputs.pointers()[c < 3 ? color_outputs_[c] : alpha_output_], n, rgba[c]);
+}
+
+}  // namespace pse::surface

@@ -1,0 +1,210 @@
+// One table of shapes: name, settings with their usual values, and how each is made.
+#include "surface/shape_words.h"
+
+#include <charconv>
+#include <cstdlib>
+#include <functional>
+#include <sstream>
+
+#include "diag/diagnostics.h"
+
+namespace pse::surface {
+namespace {
+
+// The settings of one shape, as numbers.
+using Values = std::map<std::string, std::vector<double>>;
+
+struct Parameter {
+  const char* name;
+  std::vector<double> usual;
+  double least;  // smaller is refused
+  bool any_length = false;
+};
+struct Kind {
+  const char* name;
+  std::vector<Parameter> parameters;
+  std::function<std::shared_ptr<const Shape>(const Values&)> make;
+};
+
+constexpr double tiny = 1e-6, inf = std::numeric_limits<double>::infinity();
+
+double one(const Values& v, const char* name) { return v.at(name).front(); }
+Vec3 three(const Values& v, const char* name) {
+  const auto& n = v.at(name);
+  return n.size() == 1 ? Vec3{n[0], n[0], n[0]} : Vec3{n[0], n[1], n[2]};
+}
+
+std::vector<ProfilePoint> profile_of(const std::vector<double>& numbers) {
+  std::vector<ProfilePoint> points;
+  for (std::size_t i = 0; i + 1 < numbers.size(); i += 2)
+    points.push_back({numbers[i], numbers[i + 1]});
+  return points;
+}
+
+const std::vector<Kind>& kinds() {
+  static const std::vector<Kind> all = {
+      {"sphere", {{"radius", {1}, tiny}},
+       [](const Values& v) { return make_sphere(one(v, "radius")); }},
+      {"torus", {{"major", {0.7}, tiny}, {"minor", {0.3}, tiny}},
+       [](const Values& v) { return make_torus(one(v, "major"), one(v, "minor")); }},
+      {"box", {{"size", {1.4, 1.4, 1.4}, tiny}},
+       [](const Values& v) { return make_box(three(v, "size")); }},
+      {"plane", {{"size", {inf}, tiny}},
+       [](const Values& v) { return make_plane(one(v, "size")); }},
+      {"superquadric",
+       {{"size", {1, 1, 1}, tiny}, {"north", {0.5}, 0.05}, {"east", {0.5}, 0.05}},
+       [](const Values& v) {
+         return make_superquadric(three(v, "size"), std::min(one(v, "north"), 4.0),
+                                  std::min(one(v, "east"), 4.0));
+       }},
+      {"vase", {}, [](const Values&) { return make_revolution(vase_profile(), false); }},
+      {"revolution",
+       {{"profile", {0.5, -1, 0.9, 0, 0.4, 1}, -inf, true}, {"caps", {0}, 0}},
+       [](const Values& v) {
+         return make_revolution(profile_of(v.at("profile")), one(v, "caps") != 0);
+       }}};
+  return all;
+}
+
+const Kind* find_kind(const std::string& name) {
+  for (const Kind& kind : kinds())
+    if (name == kind.name) return &kind;
+  return nullptr;
+}
+
+bool is_mesh_name(const std::string& name) { return name.find('.') != std::string::npos; }
+
+ShapeError unknown_setting(const Setting& setting, const std::string& shape,
+                           const std::vector<std::string>& known) {
+  std::string list;
+  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+  const std::string near = nearest_name(setting.key, known);
+  return {shape + " has no setting `" + setting.key + "`",
+          !near.empty()   ? "did you mean `" + near + "`?"
+          : list.empty()  ? "it has none"
+                          : "it has " + list,
+          setting.line, true};
+}
+
+std::expected<MadeShape, ShapeError> make_mesh(const ShapeSpec& spec, bool fit) {
+  MeshOptions options;
+  options.fit = fit;
+  for (const Setting& setting : spec.settings) {
+    if (setting.numbers.size() != 1 && (setting.key == "fit" || setting.key == "crease"))
+      return std::unexpected(
+          ShapeError{"`" + setting.key + "` takes one number", "", setting.line, true});
+    if (setting.key == "fit")
+      options.fit = setting.numbers.front() != 0;
+    else if (setting.key == "crease")
+      options.crease = setting.numbers.front();
+    else
+      return std::unexpected(unknown_setting(setting, "a mesh", {"fit", "crease"}));
+  }
+  const auto loaded = load_mesh(spec.shape, options);
+  if (!loaded) return std::unexpected(ShapeError{loaded.error(), "", spec.line, false});
+  const auto shape = make_mesh_shape(loaded->mesh);
+  if (!shape) return std::unexpected(ShapeError{shape.error(), "", spec.line, false});
+  return MadeShape{*shape, loaded->notes};
+}
+
+}  // namespace
+
+std::expected<ShapeSpec, ShapeError> parse_shape(const std::string& words) {
+  std::istringstream stream(words);
+  ShapeSpec spec;
+  stream >> spec.shape;
+  // A mesh's name may hold spaces.
+  if (!is_shape_name(spec.shape) && words.find('=') == std::string::npos) spec.shape = words;
+  if (spec.shape.empty()) return std::unexpected(ShapeError{"no shape is named", "", 0, true});
+  if (spec.shape == words) return spec;
+  for (std::string word; stream >> word;) {
+    const std::size_t equals = word.find('=');
+    Setting setting{word.substr(0, equals), {}, word, 0};
+    const std::string text = equals == std::string::npos ? "" : word.substr(equals + 1);
+    const char* at = text.c_str();
+    while (*at != '\0') {
+      if (text == "true" || text == "false") {
+        setting.numbers = {text == "true" ? 1.0 : 0.0};
+        break;
+      }
+      double number = 0;
+      const auto [end, problem] = std::from_chars(at, text.data() + text.size(), number);
+      if (problem != std::errc() || (*end != ',' && *end != '\0')) {
+        setting.numbers.clear();
+        break;
+      }
+      setting.numbers.push_back(number);
+      at = *end == ',' ? end + 1 : end;
+    }
+    if (setting.numbers.empty())
+      return std::unexpected(ShapeError{"`" + word + "` is no setting of a shape",
+                                        "for example: torus minor=0.3", 0, true});
+    spec.settings.push_back(std::move(setting));
+  }
+  return spec;
+}
+
+std::vector<std::pair<std::string, std::string>> shape_names() {
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const Kind& kind : kinds()) {
+    std::string text;
+    for (const Parameter& parameter : kind.parameters) {
+      text += (text.empty() ? "" : " ") + std::string(parameter.name) + "=";
+      for (std::size_t i = 0; i < parameter.usual.size(); ++i) {
+        std::ostringstream number;
+        number << parameter.usual[i];
+        text += (i == 0 ? "" : ",") + number.str();
+      }
+    }
+    names.emplace_back(kind.name, text);
+  }
+  return names;
+}
+
+bool is_shape_name(const std::string& name) { return find_kind(name) != nullptr; }
+
+std::expected<MadeShape, ShapeError> make_shape(const ShapeSpec& spec, bool fit_meshes) {
+  const Kind* kind = find_kind(spec.shape);
+  if (kind == nullptr) {
+    if (is_mesh_name(spec.shape)) return make_mesh(spec, fit_meshes);
+    std::vector<std::string> names;
+    std::string list;
+    for (const Kind& known : kinds())
+      names.emplace_back(known.name), list += std::string(known.name) + ", ";
+    const std::string near = nearest_name(spec.shape, names);
+    return std::unexpected(ShapeError{"there is no shape `" + spec.shape + "`",
+                                      near.empty() ? "shapes are " + list + "and meshes: .obj .ply .gltf .glb"
+                                                   : "did you mean `" + near + "`?",
+                                      spec.line, true});
+  }
+  Values values;
+  std::vector<std::string> known;
+  for (const Parameter& parameter : kind->parameters)
+    values[parameter.name] = parameter.usual, known.emplace_back(parameter.name);
+  for (const Setting& setting : spec.settings) {
+    const Parameter* parameter = nullptr;
+    for (const Parameter& candidate : kind->parameters)
+      if (setting.key == candidate.name) parameter = &candidate;
+    if (parameter == nullptr)
+      return std::unexpected(unknown_setting(setting, kind->name, known));
+    const std::size_t given = setting.numbers.size(), usual = parameter->usual.size();
+    const bool fits = parameter->any_length ? given >= 4 && given % 2 == 0
+                                            : given == usual || (given == 1 && usual == 3);
+    if (!fits)
+      return std::unexpected(
+          ShapeError{"`" + setting.key + "` of " + kind->name +
+                         (parameter->any_length
+                              ? " takes pairs of radius and height, two or more"
+                              : " takes " + std::to_string(usual) +
+                                    (usual == 1 ? " number" : " numbers")),
+                     "", setting.line, true});
+    for (const double number : setting.numbers)
+      if (!(number >= parameter->least) || std::isnan(number))
+        return std::unexpected(ShapeError{"`" + setting.key + "` of " + kind->name + " is too small",
+                                          "", setting.line, true});
+    values[setting.key] = setting.numbers;
+  }
+  return MadeShape{kind->make(values), {}};
+}
+
+}  // namespace pse::surface

@@ -1,0 +1,113 @@
+// The superquadric, by its gauge: the function that is 1 on the surface and grows in proportion
+// along rays from the centre. For exponents up to 2 it is convex, and then Newton's method from
+// outside never oversteps the first root.
+#include <numbers>
+
+#include "surface/shapes.h"
+
+namespace pse::surface {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+class Superquadric : public SingleShape {
+ public:
+  Superquadric(const Vec3& half_axes, double north, double east)
+      : axes_(half_axes), north_(north), east_(east) {}
+  Box bounds() const override { return {-axes_, axes_}; }
+
+ private:
+  // The gauge less 1 at p, and its gradient.
+  double gauge(const Vec3& p, Vec3& gradient) const {
+    const double x = std::abs(p.x) / axes_.x, y = std::abs(p.y) / axes_.y,
+                 z = std::abs(p.z) / axes_.z;
+    const double ring = std::pow(x, 2 / east_) + std::pow(z, 2 / east_);
+    const double f = std::pow(ring, east_ / north_) + std::pow(y, 2 / north_);
+    gradient = {};
+    if (!(f > 0)) return -1;
+    const double outer = std::pow(f, north_ / 2 - 1);
+    if (ring > 0) {
+      const double inner = outer * std::pow(ring, east_ / north_ - 1);
+      if (x > 0) gradient.x = std::copysign(inner * std::pow(x, 2 / east_ - 1) / axes_.x, p.x);
+      if (z > 0) gradient.z = std::copysign(inner * std::pow(z, 2 / east_ - 1) / axes_.z, p.z);
+    }
+    if (y > 0) gradient.y = std::copysign(outer * std::pow(y, 2 / north_ - 1) / axes_.y, p.y);
+    return outer * f - 1;
+  }
+
+  double along(const Ray& ray, double t, double& slope) const {
+    Vec3 gradient;
+    const double value = gauge(ray.origin + t * ray.direction, gradient);
+    slope = dot(gradient, ray.direction);
+    return value;
+  }
+
+  // Newton's method from t towards `end` on a convex function that is positive at t.
+  double descend(const Ray& ray, double t, double end) const {
+    const double way = end > t ? 1 : -1;
+    for (int step = 0; step < 100; ++step) {
+      double slope;
+      const double value = along(ray, t, slope);
+      if (value <= 1e-14) return t;
+      if (!(slope * way < 0)) return Box::inf;  // the least value is passed
+      const double next = t - value / slope;
+      if ((end - next) * way < 0) return Box::inf;
+      if (next == t) return t;
+      t = next;
+    }
+    return t;
+  }
+
+  // Small steps, then halving: for shapes with waists.
+  double march(const Ray& ray, double begin, double end) const {
+    constexpr int steps = 400;
+    double slope, a = begin;
+    const bool outside = along(ray, a, slope) > 0;
+    for (int i = 1; i <= steps; ++i) {
+      double b = begin + (end - begin) * i / steps;
+      if ((along(ray, b, slope) > 0) != outside) {
+        for (int halving = 0; halving < 60; ++halving) {
+          const double middle = 0.5 * (a + b);
+          ((along(ray, middle, slope) > 0) == outside ? a : b) = middle;
+        }
+        return 0.5 * (a + b);
+      }
+      a = b;
+    }
+    return Box::inf;
+  }
+
+  void meet(const Ray& ray, ShapeHit& hit) const override {
+    const Span1 span = clip(ray, bounds());
+    if (!(span.begin <= span.end) || !std::isfinite(span.end)) return;
+    double t;
+    if (east_ > 2 || north_ > 2) {
+      t = march(ray, span.begin, span.end);
+    } else {
+      double slope;
+      const bool outside = along(ray, span.begin, slope) > 1e-9;
+      t = outside ? descend(ray, span.begin, span.end) : descend(ray, span.end, span.begin);
+    }
+    if (!(t > ray.begin && t < ray.end)) return;
+    const Vec3 p = ray.origin + t * ray.direction;
+    Vec3 normal;
+    gauge(p, normal);
+    if (!(dot(normal, normal) > 0)) return;
+    hit.t = t;
+    hit.normal = hit.flat = normal;
+    hit.u = std::atan2(-p.z / axes_.z, p.x / axes_.x) / (2 * pi);
+    if (hit.u < 0) hit.u += 1;
+    hit.v = 0.5 + std::atan2(p.y / axes_.y, std::hypot(p.x / axes_.x, p.z / axes_.z)) / pi;
+  }
+
+  Vec3 axes_;
+  double north_, east_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Shape> make_superquadric(const Vec3& half_axes, double north, double east) {
+  return std::make_shared<Superquadric>(half_axes, north, east);
+}
+
+}  // namespace pse::surface

@@ -1,0 +1,77 @@
+// Visible surfaces as a source of samples (1985, "Solid texture"): the names that a hit brings, and
+// their values. Second step of the flow of a surface picture: places -> rays -> hits -> names.
+#pragma once
+
+#include <optional>
+
+#include "lower/lower.h"
+#include "stream/executor.h"
+#include "stream/image_plane.h"
+#include "stream/sample_source.h"
+#include "surface/scene.h"
+
+namespace pse::surface {
+
+// `lights`: how many the scene has; the first is `light_direction` and so on, the second
+// `light2_direction`.
+std::vector<StreamName> surface_names(std::size_t lights);
+
+// A ray, what it met, and how wide a pixel is there.
+struct Sighting {
+  Ray ray;
+  Hit hit;
+  double width = 0;  // of a pixel across the ray, metres
+  double depth = 0;
+};
+
+// Writes names of sightings into the sample-rate inputs of a module.
+class NameWriter {
+ public:
+  NameWriter(const ir::Module& module, std::shared_ptr<const Scene> scene, const Lens& lens);
+
+  // planes[i] receives module input i, for those that are names of surfaces; null: not wanted.
+  void write(std::span<const Sighting> sightings, std::span<float* const> planes) const;
+
+ private:
+  enum class What {
+    point, place, normal, flat_normal, uv, id, depth, hit, backface, view, origin, direction,
+    pixelsize, pixel_freq, dpdx, dpdy, axis_x, axis_y, axis_z,
+    light_direction, light_color, light_position, light_radius
+  };
+  struct Wanted {
+    std::size_t input;
+    What what;
+    int component;
+    std::size_t light;
+  };
+  static std::optional<Wanted> find(const std::string& name, std::size_t lights);
+  Vec3 value(const Sighting& s, const Wanted& wanted) const;
+  Vec3 shift(const Sighting& s, const Vec3& axis) const;
+
+  std::shared_ptr<const Scene> scene_;
+  Vec3 right_, up_;
+  std::vector<Wanted> wanted_;
+};
+
+// Sets the frame-rate inputs that a scene brings: eye, light_count.
+void set_scene_uniforms(const ir::Module& module, const Scene& scene, const Lens& lens,
+                        FrameState& state);
+
+class SurfaceSource : public SampleSource {
+ public:
+  SurfaceSource(const ir::Module& module, std::shared_ptr<const Scene> scene, const Lens& lens);
+  void fill(std::span<const double> x, std::span<const double> y,
+            std::span<float* const> planes) const override;
+  bool anywhere() const override { return true; }
+
+ private:
+  std::shared_ptr<const Scene> scene_;
+  Lens lens_;
+  NameWriter names_;
+};
+
+// Calls a source for the pixel centres of each tile.
+TileSource at_pixel_centres(std::shared_ptr<const SampleSource> source, double sample_x = 0.5,
+                            double sample_y = 0.5);
+
+}  // namespace pse::surface

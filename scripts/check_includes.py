@@ -24,6 +24,8 @@ THIRD_PARTY = {
     "zlib.h": ["image"],
     "OpenImageIO/": ["image"],
     "OpenColorIO/": ["image"],
+    "embree3/": ["surface"],
+    "assimp/": ["surface"],
     "oneapi/": ["stream"],
     "tbb/": ["stream"],
     "CLI/": ["app"],

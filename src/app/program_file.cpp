@@ -10,6 +10,7 @@
 #include "app/text_file.h"
 #include "lang/parser.h"
 #include "stream/image_plane.h"
+#include "surface/surface_source.h"
 
 namespace pse::app {
 
@@ -53,6 +54,9 @@ Lowered survey(ProgramFile& program, const LowerHost& host, Diagnostics& diagnos
   LowerOptions options;
   // A tree with gaps is only lowered, not searched for names.
   options.stream = images.empty() && !diagnostics.has_errors() ? image_names_read(tree) : images;
+  // Without a scene at hand a program may be meant for one with a few lights.
+  if (images.empty())
+    for (const StreamName& name : surface::surface_names(4)) options.stream.push_back(name);
   for (const StreamName& name : image_plane_names()) options.stream.push_back(name);
   if (diagnostics.has_errors()) {
     add_later_errors(program.sources, tree, host, options, diagnostics);

@@ -10,6 +10,7 @@
 #include "app/program_file.h"
 #include "app/render_job.h"
 #include "app/report.h"
+#include "app/surfaces.h"
 #include "lang/parser.h"
 
 namespace pse::app {
@@ -44,11 +45,14 @@ Exit show_help(Session& session) {
 }
 
 CompileOptions compile_options(const RenderOptions& options, const InputImages& images,
+                               const Surfaces* surfaces,
                                const std::vector<KnobSetting>& settings,
                                const lang::Program& tree) {
   CompileOptions compile;
-  // The names of images hide those of the plane.
+  // The names of images hide those of surfaces, and these those of the plane.
   compile.lower.stream = images.names();
+  if (surfaces != nullptr)
+    for (const StreamName& name : surfaces->names()) compile.lower.stream.push_back(name);
   for (const StreamName& name : image_plane_names()) compile.lower.stream.push_back(name);
   compile.lower.outputs = wanted_variables(options, tree);
   for (const KnobSetting& setting : settings) {
@@ -83,12 +87,14 @@ Exit render_command(Session& session) {
   ProgramFile program = read_program(options.program, session);
   InputImages images(options, session);
   images.open(choose_frames(options).front());
+  std::unique_ptr<Surfaces> surfaces;
+  if (wants_surfaces(options)) surfaces = std::make_unique<Surfaces>(options, session);
 
   // Compile.
   Diagnostics diagnostics;
   Diagnostics ignored;  // compile() parses again and reports
   const lang::Program tree = lang::parse(program.sources, program.file, ignored);
-  CompileOptions compile_with = compile_options(options, images, settings, tree);
+  CompileOptions compile_with = compile_options(options, images, surfaces.get(), settings, tree);
   LowerHost host = module_host(program.path, session);
   Textures textures(session, program.path, options.write.working);
   textures.answer(host);
@@ -109,10 +115,18 @@ Exit render_command(Session& session) {
   const std::vector<Knob> knobs = apply_settings(compiled->knobs, settings, session.console);
 
   textures.load(compiled->module());
+  auto whole = compiled;
+  if (surfaces) {
+    std::vector<SurfaceProgram> parts;
+    parts.push_back({compiled, knobs, &textures});
+    whole = surfaces->combine(std::move(parts));
+  } else if (const std::string problem = needs_a_scene(compiled->module()); !problem.empty()) {
+    throw usage_error(problem, "--on SHAPE or --scene FILE");
+  }
 
   // Run.
-  RenderJob job(session, options, program.sources, program.file, compiled, knobs, images, textures,
-                signals);
+  RenderJob job(session, options, program.sources, program.file, whole, knobs, images, textures,
+                surfaces.get(), signals);
   const Exit exit = job.run();
   if (!stats.empty()) {
     RunStats numbers = job.stats();

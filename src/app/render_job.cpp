@@ -51,7 +51,8 @@ std::vector<int> choose_frames(const RenderOptions& options) {
 
 RenderJob::RenderJob(Session& session, const RenderOptions& options, const SourceMap& sources,
                      FileId file, std::shared_ptr<const Program> program, std::vector<Knob> knobs,
-                     InputImages& images, const Textures& textures, Signals& signals)
+                     InputImages& images, const Textures& textures, Surfaces* surfaces,
+                     Signals& signals)
     : session_(session),
       options_(options),
       sources_(sources),
@@ -60,6 +61,7 @@ RenderJob::RenderJob(Session& session, const RenderOptions& options, const Sourc
       knobs_(std::move(knobs)),
       images_(images),
       textures_(textures),
+      surfaces_(surfaces),
       signals_(signals),
       frames_(choose_frames(options)),
       files_(plan_outputs(options, *program_)),
@@ -128,6 +130,8 @@ Exit RenderJob::run_frame(int index, int frame) {
   RenderContext context{options_, sources_, file_,   *program_,
                         knobs_,   plane_,   window_, images_.identities()};
   for (const auto& texture : textures_.identities()) context.inputs.push_back(texture);
+  if (surfaces_ != nullptr)
+    for (const auto& file : surfaces_->identities()) context.inputs.push_back(file);
   std::vector<std::string> recipes;
   if (options_.provenance)
     for (const PlannedFile& planned : files_) recipes.push_back(recipe(context, planned));
@@ -148,7 +152,15 @@ Exit RenderJob::run_frame(int index, int frame) {
 
   // Compute.
   progress_.begin_frame(index, frame);
-  const auto source = [&](const TileView& tile) { coordinates(tile), pixels(tile); };
+  TileSource seen;
+  if (surfaces_ != nullptr) {
+    surfaces_->begin_frame(plane_);
+    seen = surface::at_pixel_centres(surfaces_->source(program_->module()));
+  }
+  const auto source = [&](const TileView& tile) {
+    coordinates(tile), pixels(tile);
+    if (seen) seen(tile);
+  };
   const RunResult result = compute(source, files_.empty() ? nullptr : &writer);
   stats_.compute_seconds += result.seconds;
   if (result.end == RunEnd::failed) return report_failure(result, frame), Exit::running;
@@ -160,7 +172,7 @@ Exit RenderJob::run_frame(int index, int frame) {
   if (result.end == RunEnd::cancelled) return Exit::running;
   ++stats_.frames;
   stats_.samples += double(window_.width()) * window_.height();
-  if (count_operations_ && index == 0)
+  if (count_operations_ && index == 0 && surfaces_ == nullptr)
     count_run(*program_, frame_state(), source, window_, status_, stats_.operations);
 
   // Put the files in their places.
@@ -180,18 +192,8 @@ bool RenderJob::skip_done(int frame, const std::vector<std::string>& recipes) co
 }
 
 FrameState RenderJob::frame_state() const {
-  FrameState state;
-  const ir::Module& module = program_->module();
-  set_plane_uniforms(module, plane_, state);
-  state.externals = textures_.functions();
-  for (const Knob& knob : knobs_)
-    for (std::size_t c = 0; c < knob.value.size(); ++c) {
-      const std::string name =
-          knob.value.size() == 1 ? knob.name : fmt::format("{}.{}", knob.name, c);
-      for (std::size_t i = 0; i < module.inputs.size(); ++i)
-        if (module.inputs[i].rate == ir::Rate::frame && module.inputs[i].name == name)
-          state.uniforms[i] = knob.value[c];
-    }
+  FrameState state = plane_state(program_->module(), plane_, knobs_);
+  if (surfaces_ == nullptr) state.externals = textures_.functions();
   return state;
 }
 

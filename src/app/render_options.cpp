@@ -142,6 +142,8 @@ RenderOptions render_options(const Session& session) {
   if (const auto value = arguments.value("seed"))
     options.seed = static_cast<std::uint32_t>(parse_integer(*value, 0, 1 << 24));
 
+  options.on = arguments.text_or("on", "");
+
   // How it is computed.
   if (const auto value = arguments.value("threads"))
     options.threads = parse_integer(*value, 0, 1024);

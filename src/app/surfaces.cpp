@@ -21,6 +21,7 @@ surface::Light usual_light() { return {{-0.55, 0.75, 0.6}, false, {1, 1, 1}, 0};
 bool wants_surfaces(const RenderOptions& options) { return !options.on.empty(); }
 
 Surfaces::Surfaces(const RenderOptions& options, Session& session) {
+  identities_.emplace_back("--on " + options.on, "");
   auto spec = surface::parse_shape(options.on);
   if (!spec) throw_failure(spec.error());
   if (!surface::is_shape_name(spec->shape)) {
@@ -85,6 +86,13 @@ std::vector<std::pair<std::string, std::string>> Surfaces::identities() const {
   for (const SurfaceProgram& part : programs_)
     for (const auto& texture : part.textures->identities()) all.push_back(texture);
   return all;
+}
+
+std::string needs_a_scene(const ir::Module& module) {
+  for (const ir::External& external : module.externals)
+    if (surface::TraceCall::of(external.name))
+      return fmt::format("the program calls {}(), and there is no scene", external.name);
+  return "";
 }
 
 FrameState plane_state(const ir::Module& module, const ImagePlane& plane,

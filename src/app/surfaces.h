@@ -18,7 +18,7 @@ namespace pse::app {
 struct SurfaceProgram {
   std::shared_ptr<const Program> program;
   std::vector<Knob> knobs;
-  std::unique_ptr<Textures> textures;
+  const Textures* textures = nullptr;
 };
 
 class Surfaces {
@@ -50,6 +50,9 @@ class Surfaces {
 
 // Whether these arguments ask for surfaces at all.
 bool wants_surfaces(const RenderOptions& options);
+
+// What is wrong with running the module without a scene; empty: nothing.
+std::string needs_a_scene(const ir::Module& module);
 
 // Uniforms of the plane and the knobs.
 FrameState plane_state(const ir::Module& module, const ImagePlane& plane,

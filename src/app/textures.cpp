@@ -58,6 +58,10 @@ void Textures::answer(LowerHost& host) const {
 
 void Textures::load(const ir::Module& module) {
   for (const ir::External& external : module.externals) {
+    if (!external.name.starts_with("texture ")) {
+      calls_.push_back(nullptr);  // somebody else binds it
+      continue;
+    }
     const TextureName name = parse_name(external.name);
     const auto texture = cache_->load(name.file, name.layer);
     if (!texture) throw Failure(Exit::input, texture.error().message);
@@ -70,7 +74,9 @@ void Textures::load(const ir::Module& module) {
 
 std::vector<ExternalFunction> Textures::functions() const {
   std::vector<ExternalFunction> functions;
-  for (const auto& call : calls_) functions.push_back({&image::TextureCall::run, call.get()});
+  for (const auto& call : calls_)
+    functions.push_back(call ? ExternalFunction{&image::TextureCall::run, call.get()}
+                             : ExternalFunction{});
   return functions;
 }
 

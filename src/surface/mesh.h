@@ -27,7 +27,7 @@ struct Mesh {
 
 struct MeshOptions {
   bool fit = false;      // moved and scaled so that it is centred and its longest side is 2
-  double crease = 40;    // degrees; where a mesh has no normals, edges sharper than this stay sharp
+  double crease = 60;    // degrees; where a mesh has no normals, edges sharper than this stay sharp
   std::size_t most_triangles = 4'000'000;
 };
 

@@ -82,7 +82,8 @@ class Revolution : public SingleShape {
     pieces_.insert(front ? pieces_.begin() : pieces_.end(), disc);
   }
 
-  void meet(const Ray& ray, ShapeHit& hit) const override {
+  void meet(const Ray& given, ShapeHit& hit) const override {
+    const Ray ray = beside_axis(given);
     const Span1 span = clip(ray, bounds_);
     if (!(span.begin <= span.end)) return;
     Meeting nearest;
@@ -97,6 +98,19 @@ class Revolution : public SingleShape {
         meet_slanted(ray, i, nearest);
     }
     if (nearest.t < ray.end) fill(ray, nearest, hit);
+  }
+
+  // A ray through the axis meets the poles in a double root; one a millionth beside it does not.
+  static Ray beside_axis(Ray ray) {
+    const double dx = ray.direction.x, dz = ray.direction.z, k = dx * dx + dz * dz;
+    const double t = k > 0 ? -(ray.origin.x * dx + ray.origin.z * dz) / k : 0;
+    const double x = ray.origin.x + t * dx, z = ray.origin.z + t * dz;
+    if (x * x + z * z > 1e-12) return ray;
+    if (k > 0)
+      ray.origin = ray.origin + (1e-6 / std::sqrt(k)) * Vec3{-dz, 0, dx};
+    else
+      ray.origin.x += 1e-6;
+    return ray;
   }
 
   // Whether the ray comes through the ring that the piece lies in.

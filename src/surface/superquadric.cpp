@@ -1,6 +1,7 @@
 // The superquadric, by its gauge: the function that is 1 on the surface and grows in proportion
 // along rays from the centre. For exponents up to 2 it is convex, and then Newton's method from
 // outside never oversteps the first root.
+#include <array>
 #include <numbers>
 
 #include "surface/shapes.h"
@@ -58,24 +59,31 @@ class Superquadric : public SingleShape {
     return t;
   }
 
-  // Small steps, then halving: for shapes with waists.
+  // Small steps, then halving: for shapes with waists. The function is least where the ray crosses a
+  // plane between octants, so steps begin and end there.
   double march(const Ray& ray, double begin, double end) const {
-    constexpr int steps = 400;
-    double slope, a = begin;
-    const bool outside = along(ray, a, slope) > 0;
-    for (int i = 1; i <= steps; ++i) {
-      double b = begin + (end - begin) * i / steps;
-      if ((along(ray, b, slope) > 0) != outside) {
+    std::array<double, 5> stops = {begin, begin, begin, begin, end};
+    for (int axis = 0; axis < 3; ++axis) {
+      const double t = -ray.origin[axis] / ray.direction[axis];
+      if (t > begin && t < end) stops[static_cast<std::size_t>(axis) + 1] = t;
+    }
+    std::sort(stops.begin(), stops.end());
+    double slope;
+    const bool outside = along(ray, begin, slope) > 0;
+    for (std::size_t k = 0; k + 1 < stops.size(); ++k)
+      for (int i = 1; i <= steps && stops[k + 1] > stops[k]; ++i) {
+        double a = stops[k] + (stops[k + 1] - stops[k]) * (i - 1) / steps,
+               b = i == steps ? stops[k + 1] : stops[k] + (stops[k + 1] - stops[k]) * i / steps;
+        if ((along(ray, b, slope) > 0) == outside) continue;
         for (int halving = 0; halving < 60; ++halving) {
           const double middle = 0.5 * (a + b);
           ((along(ray, middle, slope) > 0) == outside ? a : b) = middle;
         }
         return 0.5 * (a + b);
       }
-      a = b;
-    }
     return Box::inf;
   }
+  static constexpr int steps = 128;
 
   void meet(const Ray& ray, ShapeHit& hit) const override {
     const Span1 span = clip(ray, bounds());
@@ -85,7 +93,8 @@ class Superquadric : public SingleShape {
       t = march(ray, span.begin, span.end);
     } else {
       double slope;
-      const bool outside = along(ray, span.begin, slope) > 1e-9;
+      // A ray that comes into the box is outside even where a flat side touches the box.
+      const bool outside = span.begin > ray.begin || along(ray, span.begin, slope) > 1e-9;
       t = outside ? descend(ray, span.begin, span.end) : descend(ray, span.end, span.begin);
     }
     if (!(t > ray.begin && t < ray.end)) return;

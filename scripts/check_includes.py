@@ -28,6 +28,7 @@ THIRD_PARTY = {
     "assimp/": ["surface"],
     "oneapi/": ["stream"],
     "tbb/": ["stream"],
+    "openvdb/": ["volume/modules"],
     "CLI/": ["app"],
     "toml++/": ["app"],
     "fmt/": None,

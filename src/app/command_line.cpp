@@ -69,6 +69,7 @@ Exit dispatch(Session& session) {
     return Exit::ok;
   }
   if (name == "render") return render_command(session);
+  if (name == "bake") return bake_command(session);
   if (name == "check") return check_command(session);
   if (name == "fmt") return fmt_command(session);
   if (name == "info") return info_command(session);

@@ -188,6 +188,18 @@ std::vector<Knob> apply_settings(std::vector<Knob> knobs, const std::vector<Knob
   return knobs;
 }
 
+void set_knob_uniforms(const ir::Module& module, const std::vector<Knob>& knobs,
+                       FrameState& state) {
+  for (const Knob& knob : knobs)
+    for (std::size_t c = 0; c < knob.value.size(); ++c) {
+      const std::string name =
+          knob.value.size() == 1 ? knob.name : fmt::format("{}.{}", knob.name, c);
+      for (std::size_t i = 0; i < module.inputs.size(); ++i)
+        if (module.inputs[i].rate == ir::Rate::frame && module.inputs[i].name == name)
+          state.uniforms[i] = knob.value[c];
+    }
+}
+
 std::string knob_text(const Knob& knob) {
   if (knob.is_text()) return knob.text;
   if (knob.is_boolean) return knob.value.front() != 0 ? "true" : "false";

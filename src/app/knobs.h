@@ -4,6 +4,7 @@
 #include <map>
 
 #include "app/session.h"
+#include "codegen/kernel.h"
 #include "lower/lower.h"
 
 namespace pse::app {
@@ -24,6 +25,9 @@ std::vector<KnobSetting> knob_settings(const Session& session,
 // are nobody's business.
 std::vector<Knob> apply_settings(std::vector<Knob> knobs, const std::vector<KnobSetting>& settings,
                                  Console& console);
+
+// Sets the uniforms of the module's inputs that are knobs; state.uniforms has room for every input.
+void set_knob_uniforms(const ir::Module& module, const std::vector<Knob>& knobs, FrameState& state);
 
 // A knob's value as the command line would take it: "0.5", "[1 0 0]", "true", "text".
 std::string knob_text(const Knob& knob);

@@ -158,6 +158,68 @@ std::vector<OptionSpec> render_options() {
   };
 }
 
+std::vector<OptionSpec> bake_options() {
+  // Options that mean what they mean to `pse render`.
+  const auto shared = [](std::string_view name) {
+    for (const OptionSpec& option : render_options())
+      if (option.name == name) return option;
+    return OptionSpec{};
+  };
+  return {
+      {"o",
+       "output",
+       many,
+       "FILE",
+       "the file to write: NAME.vdb; NAMES=FILE writes the grids NAMES, separated by commas",
+       {},
+       Offer::file},
+      shared("frames"),
+      threads,
+      {"",
+       "res",
+       one,
+       "N",
+       "voxels along the longest side, or NxNxN along x, y and z; default 128"},
+      {"",
+       "bounds",
+       one,
+       "X0,Y0,Z0,X1,Y1,Z1",
+       "the box, from its lowest to its highest corner, in metres; one number N: from -N to N; "
+       "default 1"},
+      {"", "up", one, "AXIS", "which axis of the file points up; default y", {"y", "z"}},
+      {"", "half", nothing, "", "store 16 bits a number; the default"},
+      {"", "float", nothing, "", "store 32 bits a number"},
+      {"",
+       "band",
+       one,
+       "N",
+       "how far from the surface distances are kept, in voxels; default 3"},
+      {"", "memory", one, "MIB", "stop where the grids take more memory; default 8192"},
+      shared("seed"),
+      shared("fps"),
+      define,
+      shared("params"),
+      include,
+      {"",
+       "nan",
+       one,
+       "POLICY",
+       "what to do with NaN and infinity: store nothing there (black), with a warning, or end with "
+       "exit 6 (error)",
+       {"black", "error"}},
+      shared("resume"),
+      shared("no-provenance"),
+      warn,
+      shared("width"),
+      shared("interpret"),
+      shared("no-optimize"),
+      shared("no-cache"),
+      shared("progress"),
+      quiet,
+      help,
+  };
+}
+
 const std::vector<CommandSpec>& table() {
   static const std::vector<CommandSpec> all = {
       {"render",
@@ -184,6 +246,20 @@ const std::vector<CommandSpec>& table() {
         {"pse render over.pse fg=ball.%04d.exr bg=sky.exr -f 1-3 -o out.%04d.exr", "compositing"},
         {"pse render a.pse -o - | pse render b.pse - -o b.png", "programs as filters"},
         {"pse render marble.pse --help", "the program's own knobs"}}},
+      {"bake",
+       "PROGRAM [Name=VALUE...] -o FILE.vdb",
+       "compute a volume",
+       "Runs PROGRAM at every voxel of a box and writes the variables density, temperature, color "
+       "and distance that it sets as grids of an OpenVDB file. In a program that sets none of them "
+       "the functions of these names are called instead: `function density(p)` is enough.\n"
+       "\n"
+       "Matter is where density is above 0; what is empty takes no room. `temperature` is in "
+       "kelvin. `distance` makes a level set: metres to a surface, negative inside.",
+       Offer::program,
+       bake_options(),
+       {{"pse bake cloud.pse -o cloud.vdb --res 200", "density, temperature and color"},
+        {"pse bake fire.pse -f 1-100 -o fire.%04d.vdb --bounds -1,0,-1,1,3,1", "a sequence"},
+        {"pse bake cloud.pse -o density=cloud.vdb --up z", "one grid, for a program with z up"}}},
       {"check",
        "PROGRAM... [IMAGE] [name=IMAGE...]",
        "report errors and warnings of programs",

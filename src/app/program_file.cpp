@@ -45,6 +45,10 @@ LowerHost module_host(const std::string& program_path, const Session& session) {
   host.texture_components = [](const std::string&, const std::string& layer, std::string&) {
     return layer == "alpha" || layer == "Z" ? 1 : 3;
   };
+  // Without volumes at hand a grid counts as a number, unless it is called as a colour is.
+  host.volume_components = [](const std::string&, const std::string& grid, std::string&) {
+    return grid == "color" || grid == "v" || grid == "velocity" ? 3 : 1;
+  };
   return host;
 }
 

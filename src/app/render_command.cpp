@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cstdlib>
 
+#include "app/compile_settings.h"
 #include "app/emit.h"
 #include "app/help.h"
 #include "app/knobs.h"
@@ -17,14 +17,6 @@ namespace pse::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path cache_folder() {
-  const char* cache = std::getenv("XDG_CACHE_HOME");
-  const char* home = std::getenv("HOME");
-  if (cache != nullptr && *cache == '/') return fs::path(cache) / "pse";
-  if (home != nullptr && *home == '/') return fs::path(home) / ".cache/pse";
-  return {};
-}
 
 // The command's help, or with a program that program's knobs.
 Exit show_help(Session& session) {
@@ -48,24 +40,13 @@ CompileOptions compile_options(const RenderOptions& options, const InputImages& 
                                const Surfaces* surfaces,
                                const std::vector<KnobSetting>& settings,
                                const lang::Program& tree) {
-  CompileOptions compile;
+  CompileOptions compile = compile_settings(options, settings);
   // The names of images hide those of surfaces, and these those of the plane.
   compile.lower.stream = images.names();
   if (surfaces != nullptr)
     for (const StreamName& name : surfaces->names()) compile.lower.stream.push_back(name);
   for (const StreamName& name : image_plane_names()) compile.lower.stream.push_back(name);
   compile.lower.outputs = wanted_variables(options, tree);
-  for (const KnobSetting& setting : settings) {
-    // The last setting of a name counts.
-    std::erase_if(compile.lower.text_knobs,
-                  [&](const auto& knob) { return knob.first == setting.name; });
-    compile.lower.text_knobs.emplace_back(setting.name, setting.text);
-  }
-  compile.codegen.width = options.width;
-  compile.codegen.optimize = options.optimize;
-  if (options.cache) compile.codegen.cache = cache_folder();
-  compile.interpret = options.interpret;
-  compile.optimize = options.optimize;
   return compile;
 }
 

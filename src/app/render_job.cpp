@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "app/knobs.h"
 #include "app/report.h"
 #include "image/sequence.h"
 
@@ -22,18 +23,6 @@ int choose_tile(const RenderOptions& options, const Rect& window) {
   while (tile > 16 && tiles() < 8.0 * thread_count(options.threads)) tile /= 2;
   return tile;
 }
-
-// The job that the signals may stop, for as long as this lives.
-class Watch {
- public:
-  Watch(Signals& signals, RunStatus& run) : signals_(signals) { signals_.watch(&run); }
-  ~Watch() { signals_.watch(nullptr); }
-  Watch(const Watch&) = delete;
-  Watch& operator=(const Watch&) = delete;
-
- private:
-  Signals& signals_;
-};
 
 // Memory for tiles that wait for their turn to be written.
 constexpr std::size_t tile_memory = std::size_t{128} << 20;
@@ -109,7 +98,7 @@ Rect RenderJob::choose_window() const {
 }
 
 Exit RenderJob::run() {
-  const Watch watch(signals_, status_);
+  const SignalWatch watch(signals_, status_);
   Exit exit = Exit::ok;
   for (std::size_t i = 0; i < frames_.size() && exit == Exit::ok; ++i)
     exit = run_frame(static_cast<int>(i), frames_[i]);

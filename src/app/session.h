@@ -26,6 +26,7 @@ struct Session {
 
 // One function per command. They return the exit status, or throw Failure.
 Exit render_command(Session& session);
+Exit bake_command(Session& session);
 Exit check_command(Session& session);
 Exit fmt_command(Session& session);
 Exit info_command(Session& session);

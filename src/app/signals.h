@@ -39,4 +39,16 @@ class Signals {
   std::jthread thread_;
 };
 
+// The run that the signals may stop, for as long as this lives.
+class SignalWatch {
+ public:
+  SignalWatch(Signals& signals, RunStatus& run) : signals_(signals) { signals_.watch(&run); }
+  ~SignalWatch() { signals_.watch(nullptr); }
+  SignalWatch(const SignalWatch&) = delete;
+  SignalWatch& operator=(const SignalWatch&) = delete;
+
+ private:
+  Signals& signals_;
+};
+
 }  // namespace pse::app

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/input_images.h"
+#include "app/knobs.h"
 #include "surface/shape_words.h"
 
 namespace pse::app {
@@ -99,14 +100,7 @@ FrameState plane_state(const ir::Module& module, const ImagePlane& plane,
                        const std::vector<Knob>& knobs) {
   FrameState state;
   set_plane_uniforms(module, plane, state);
-  for (const Knob& knob : knobs)
-    for (std::size_t c = 0; c < knob.value.size(); ++c) {
-      const std::string name =
-          knob.value.size() == 1 ? knob.name : fmt::format("{}.{}", knob.name, c);
-      for (std::size_t i = 0; i < module.inputs.size(); ++i)
-        if (module.inputs[i].rate == ir::Rate::frame && module.inputs[i].name == name)
-          state.uniforms[i] = knob.value[c];
-    }
+  set_knob_uniforms(module, knobs, state);
   return state;
 }
 

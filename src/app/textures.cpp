@@ -1,9 +1,12 @@
-// Binding the externals "texture LAYER FILTER WRAP FILE" (lower/intrinsics.cpp) to loaded textures.
+// Binding the externals "texture LAYER FILTER WRAP FILE" (lower/intrinsics.cpp) and "volume LENGTH
+// GRID FILE" (lower/intrinsic_volume.cpp) to what they name.
 #include "app/textures.h"
 
 #include <filesystem>
+#include <sstream>
 
 #include "app/input_images.h"
+#include "image/sequence.h"
 
 namespace pse::app {
 namespace {
@@ -20,8 +23,7 @@ TextureName parse_name(std::string_view name) {
     name.remove_prefix(std::min(name.size(), end + 1));
     return text;
   };
-  if (word() != "texture")
-    throw Failure(Exit::running, "the program calls something that is no texture");
+  word();  // "texture"
   TextureName parts;
   parts.layer = word();
   parts.filter = word();
@@ -38,13 +40,16 @@ Textures::Textures(const Session& session, const std::string& program_path,
   const fs::path beside = program_path == "-" ? fs::path() : fs::path(program_path).parent_path();
   resolve_ = [&session, beside](const std::string& file) {
     std::error_code error;
-    if (fs::path(file).is_relative() && fs::exists(beside / file, error))
+    if (fs::path(file).is_relative() &&
+        (fs::exists(beside / file, error) ||
+         (image::is_pattern(file) && !image::existing_frames((beside / file).string()).empty())))
       return (beside / file).string();
     return session.find_file(file);
   };
   image::ReadOptions options;
   options.working = working;
   cache_ = std::make_shared<image::TextureCache>(options, resolve_);
+  volumes_ = std::make_shared<volume::VolumeCache>(resolve_);
 }
 
 void Textures::answer(LowerHost& host) const {
@@ -54,30 +59,51 @@ void Textures::answer(LowerHost& host) const {
     if (!components) error = components.error().message;
     return components.value_or(0);
   };
+  host.volume_components = [volumes = volumes_](const std::string& file, const std::string& grid,
+                                                std::string& error) {
+    const auto components = volumes->components(file, grid);
+    if (!components) error = components.error().message;
+    return components.value_or(0);
+  };
 }
 
 void Textures::load(const ir::Module& module) {
   for (const ir::External& external : module.externals) {
-    if (!external.name.starts_with("texture ")) {
-      calls_.push_back(nullptr);  // somebody else binds it
-      continue;
-    }
-    const TextureName name = parse_name(external.name);
-    const auto texture = cache_->load(name.file, name.layer);
-    if (!texture) throw Failure(Exit::input, texture.error().message);
-    calls_.push_back(std::make_unique<image::TextureCall>(image::TextureCall{
-        *texture, image::filter_from_name(name.filter).value_or(image::Filter::linear),
-        image::wrap_from_name(name.wrap).value_or(image::Wrap::repeat), external.arguments > 2}));
-    identities_.emplace_back(name.file, file_identity(resolve_(name.file)));
+    if (external.name.starts_with("texture "))
+      functions_.push_back(bind_texture(external));
+    else if (external.name.starts_with("volume "))
+      functions_.push_back(bind_volume(external));
+    else
+      functions_.push_back({});  // somebody else binds it
   }
 }
 
-std::vector<ExternalFunction> Textures::functions() const {
-  std::vector<ExternalFunction> functions;
-  for (const auto& call : calls_)
-    functions.push_back(call ? ExternalFunction{&image::TextureCall::run, call.get()}
-                             : ExternalFunction{});
-  return functions;
+ExternalFunction Textures::bind_texture(const ir::External& external) {
+  const TextureName name = parse_name(external.name);
+  const auto texture = cache_->load(name.file, name.layer);
+  if (!texture) throw Failure(Exit::input, texture.error().message);
+  texture_calls_.push_back(std::make_unique<image::TextureCall>(image::TextureCall{
+      *texture, image::filter_from_name(name.filter).value_or(image::Filter::linear),
+      image::wrap_from_name(name.wrap).value_or(image::Wrap::repeat), external.arguments > 2}));
+  identities_.emplace_back(name.file, file_identity(resolve_(name.file)));
+  return {&image::TextureCall::run, texture_calls_.back().get()};
+}
+
+ExternalFunction Textures::bind_volume(const ir::External& external) {
+  std::istringstream words(external.name);
+  std::string word, grid, file;
+  std::size_t length = 0;
+  words >> word >> length;
+  grid.resize(length);
+  words.get();
+  words.read(grid.data(), static_cast<std::streamsize>(length));
+  words.get();
+  std::getline(words, file, '\0');
+  const auto volume = volumes_->load(file, grid);
+  if (!volume) throw Failure(Exit::input, volume.error().message);
+  volume_calls_.push_back(std::make_unique<volume::VolumeCall>(volume::VolumeCall{*volume}));
+  identities_.emplace_back(file, file_identity(resolve_(file)));
+  return {&volume::VolumeCall::run, volume_calls_.back().get()};
 }
 
 }  // namespace pse::app

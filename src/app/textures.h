@@ -1,4 +1,4 @@
-// The stored pictures that a program looks up with texture().
+// What is stored and looked up while a program runs: pictures with texture(), volumes with volume().
 #pragma once
 
 #include <memory>
@@ -9,6 +9,7 @@
 #include "codegen/kernel.h"
 #include "image/texture.h"
 #include "lower/lower.h"
+#include "volume/volume.h"
 
 namespace pse::app {
 
@@ -17,19 +18,25 @@ class Textures {
   // Files are looked for as named, beside the program, and on the search path.
   Textures(const Session& session, const std::string& program_path, image::ColourSpace working);
 
-  // Lets the lowering ask for a texture's components.
+  // Lets the lowering ask for the components of textures and volumes.
   void answer(LowerHost& host) const;
   // Loads what the module calls. Throws Failure (input).
   void load(const ir::Module& module);
   // What the module's externals are bound to; valid as long as this object.
-  std::vector<ExternalFunction> functions() const;
+  std::vector<ExternalFunction> functions() const { return functions_; }
   // Files loaded, with their identities.
   std::vector<std::pair<std::string, std::string>> identities() const { return identities_; }
 
  private:
+  ExternalFunction bind_texture(const ir::External& external);
+  ExternalFunction bind_volume(const ir::External& external);
+
   std::shared_ptr<image::TextureCache> cache_;
+  std::shared_ptr<volume::VolumeCache> volumes_;
   std::function<std::string(const std::string&)> resolve_;
-  std::vector<std::unique_ptr<image::TextureCall>> calls_;  // one per external of the module
+  std::vector<std::unique_ptr<image::TextureCall>> texture_calls_;
+  std::vector<std::unique_ptr<volume::VolumeCall>> volume_calls_;
+  std::vector<ExternalFunction> functions_;  // one per external of the module
   std::vector<std::pair<std::string, std::string>> identities_;
 };
 

@@ -47,6 +47,8 @@ struct LowerHost {
   std::function<std::optional<FileId>(SourceMap&, const std::string& name)> find_module;
   // The number of components of a stored texture's layer, or an error message. See `texture()` in docs/language.md.
   std::function<int(const std::string& file, const std::string& layer, std::string& error)> texture_components;
+  // The same of a stored volume's grid, see `volume()`; an empty name is the file's main grid.
+  std::function<int(const std::string& file, const std::string& grid, std::string& error)> volume_components;
 };
 
 struct LowerOptions {

@@ -108,6 +108,7 @@ class Lowering {
   std::vector<std::string> intrinsic_names() const;
   Typed call_intrinsic(const std::string& name, std::vector<CallArgument>& arguments, const Span& span);
   Typed intrinsic_texture(std::vector<CallArgument>& arguments, const Span& span);
+  Typed intrinsic_volume(std::vector<CallArgument>& arguments, const Span& span);
   Typed intrinsic_fold(const std::string& name, std::vector<CallArgument>& arguments, const Span& span);
 
   // arrays.cpp

@@ -1,0 +1,27 @@
+// Programs that are functions: `function density(p)` alone says what is where, and a command that
+// needs outputs calls it at the samples' points. The lines added are the user's own language and
+// are kept with the program's text.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/program_file.h"
+#include "lang/ast.h"
+
+namespace pse::app {
+
+// How many arguments a function of the program must be given at least; -1 where it has none of that
+// name.
+int required_parameters(const lang::Program& tree, const std::string& name);
+// Whether the program sets `name` outside its functions.
+bool sets_at_top(const lang::Program& tree, const std::string& name);
+
+// Lines that set each of `names` by calling the function of that name at `point`; functions of two
+// parameters, as `color(p, density)`, are given the density too.
+std::string calls_at_point(const lang::Program& tree, const std::vector<std::string>& names);
+
+// The program with lines behind its own, as another file of the same name.
+void append_lines(ProgramFile& program, const std::string& lines);
+
+}  // namespace pse::app

@@ -1,0 +1,22 @@
+// Inside the OpenVDB module: what its files share.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <string>
+
+#include "volume/vdb.h"
+
+namespace pse::volume {
+
+// The parts of Vdb, one file each.
+Result<FileInfo> read_info(const std::string& file);
+Result<GridData> read_grid(const std::string& file, const std::string& name, std::size_t limit);
+std::unique_ptr<GridWriter> make_writer(std::vector<GridSpec> grids, const GridPlace& place);
+Result<void> add_mesh_to(GridWriter& to, const MeshView& mesh, float band, bool is_signed,
+                         bool (*keep_on)(void*), void* user);
+
+// A grid that the writer of this module collects, for add_mesh.
+openvdb::FloatGrid& float_grid_of(GridWriter& writer, std::size_t grid);
+
+}  // namespace pse::volume

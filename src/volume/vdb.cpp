@@ -1,0 +1,17 @@
+// Opening the module around OpenVDB, once.
+#include "volume/vdb.h"
+
+#include "image/module_loader.h"
+
+namespace pse::volume {
+
+Result<Vdb*> open_vdb() {
+  static const Result<Vdb*> vdb = []() -> Result<Vdb*> {
+    const auto found = image::load_module("pse_vdb", "pse_vdb");
+    if (!found) return std::unexpected(found.error());
+    return reinterpret_cast<Vdb* (*)()>(*found)();
+  }();
+  return vdb;
+}
+
+}  // namespace pse::volume

@@ -35,6 +35,8 @@ std::string recipe(const RenderContext& context, const PlannedFile& file) {
                           context.window.x1, context.window.y1})
     hasher.add(value);
   hasher.add(plane.seed);
+  hasher.add(context.options.antialias_text);
+  hasher.add(context.options.filter_text);
   const PlaneTransform transform = plane.transform.value_or(PlaneTransform{});
   for (const double value : {plane.frame, plane.fps}) hasher.add(fmt::format("{}", value));
   for (const double value : transform) hasher.add(fmt::format("{}", value));

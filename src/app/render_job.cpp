@@ -39,14 +39,15 @@ std::vector<int> choose_frames(const RenderOptions& options) {
 }
 
 RenderJob::RenderJob(Session& session, const RenderOptions& options, const SourceMap& sources,
-                     FileId file, std::shared_ptr<const Program> program, std::vector<Knob> knobs,
-                     InputImages& images, const Textures* textures, Surfaces* surfaces,
+                     FileId file, antialias::Programs programs, std::vector<Knob> knobs,
+                     InputImages& images, const Textures& textures, Surfaces* surfaces,
                      Signals& signals)
     : session_(session),
       options_(options),
       sources_(sources),
       file_(file),
-      program_(std::move(program)),
+      programs_(std::move(programs)),
+      program_(programs_.shown),
       knobs_(std::move(knobs)),
       images_(images),
       textures_(textures),
@@ -118,8 +119,7 @@ Exit RenderJob::run_frame(int index, int frame) {
   // What this frame is made from, and whether it is there already.
   RenderContext context{options_, sources_, file_,   *program_,
                         knobs_,   plane_,   window_, images_.identities()};
-  if (textures_ != nullptr)
-    for (const auto& texture : textures_->identities()) context.inputs.push_back(texture);
+  for (const auto& texture : textures_.identities()) context.inputs.push_back(texture);
   if (surfaces_ != nullptr)
     for (const auto& file : surfaces_->identities()) context.inputs.push_back(file);
   std::vector<std::string> recipes;
@@ -135,7 +135,10 @@ Exit RenderJob::run_frame(int index, int frame) {
   common.frames_per_second = frames_.size() > 1 ? plane_.fps : 0;
   if (options_.provenance) common.attributes = provenance(context);
   const TileSource pixels = images_.load(program_->module());
-  const TileSource coordinates = image_plane_source(program_->module(), plane_, window_);
+  // With the apron that antialiasing looks at.
+  const TileSource coordinates =
+      image_plane_source(program_->module(), plane_,
+                         {window_.x0 - 2, window_.y0 - 2, window_.x1 + 2, window_.y1 + 2});
   FrameWriter writer(files_, frame, common, window_, options_.nan, recipes,
                      [this](std::size_t file, const std::string& name,
                             const image::ImageSpec& spec) { return open_writer(file, name, spec); });
@@ -163,7 +166,7 @@ Exit RenderJob::run_frame(int index, int frame) {
   ++stats_.frames;
   stats_.samples += double(window_.width()) * window_.height();
   if (count_operations_ && index == 0 && surfaces_ == nullptr)
-    count_run(*program_, frame_state(), source, window_, status_, stats_.operations);
+    count_run(*program_, frame_state(*program_), source, window_, status_, stats_.operations);
 
   // Put the files in their places.
   for (const std::string& name : writer.close())
@@ -181,9 +184,9 @@ bool RenderJob::skip_done(int frame, const std::vector<std::string>& recipes) co
   return true;
 }
 
-FrameState RenderJob::frame_state() const {
-  FrameState state = plane_state(program_->module(), plane_, knobs_);
-  if (textures_ != nullptr) state.externals = textures_->functions();
+FrameState RenderJob::frame_state(const Program& program) const {
+  FrameState state = plane_state(program.module(), plane_, knobs_);
+  if (surfaces_ == nullptr) state.externals = textures_.functions();
   return state;
 }
 
@@ -224,16 +227,28 @@ RunResult RenderJob::compute(const TileSource& source, FrameWriter* writer) {
     if (writer != nullptr && signals_.take_snapshot_request()) write_snapshots(*writer);
   };
   const int tile = choose_tile(options_, window_);
-  FrameState state = frame_state();
-  return execute(*program_, state, source, sink,
-                 {.window = window_,
-                  .tile_width = tile,
-                  .tile_height = tile,
-                  .threads = options_.threads,
-                  .ordered_sink = writer != nullptr,
-                  .progress = progress,
-                  .memory_limit = tile_memory},
-                 status_);
+  const antialias::Host host{
+      [this](const Program& program) { return frame_state(program); },
+      [this](const ir::Module& module) { return image_plane_samples(module, plane_); }};
+  return antialias::execute(programs_, host, antialias(), source, sink,
+                            {.window = window_,
+                             .tile_width = tile,
+                             .tile_height = tile,
+                             .threads = options_.threads,
+                             .ordered_sink = writer != nullptr,
+                             .progress = progress,
+                             .memory_limit = tile_memory},
+                            status_, stats_.antialias);
+}
+
+// Pixels of images are known at their centres only.
+antialias::Options RenderJob::antialias() const {
+  antialias::Options antialias = options_.antialias;
+  if (surfaces_ != nullptr) antialias.mode = antialias::Mode::none;
+  for (const StreamName& name : images_.names())
+    if (std::ranges::find(program_->reads, name.name) != program_->reads.end())
+      antialias.mode = antialias::Mode::none;
+  return antialias;
 }
 
 void RenderJob::write_snapshots(FrameWriter& writer) {

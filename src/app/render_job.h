@@ -1,6 +1,7 @@
 // A compiled program with its knobs, images and files, run frame by frame.
 #pragma once
 
+#include "antialias/antialias.h"
 #include "app/frame_writer.h"
 #include "app/input_images.h"
 #include "app/progress.h"
@@ -16,8 +17,8 @@ class RenderJob {
  public:
   // `images` has the first frame open.
   RenderJob(Session& session, const RenderOptions& options, const SourceMap& sources, FileId file,
-            std::shared_ptr<const Program> program, std::vector<Knob> knobs, InputImages& images,
-            const Textures* textures, Surfaces* surfaces, Signals& signals);
+            antialias::Programs programs, std::vector<Knob> knobs, InputImages& images,
+            const Textures& textures, Surfaces* surfaces, Signals& signals);
 
   // All frames. Throws Failure; returns how a stopped or failed run should end.
   Exit run();
@@ -27,7 +28,8 @@ class RenderJob {
   Exit run_frame(int index, int frame);
   Rect choose_window() const;
   bool skip_done(int frame, const std::vector<std::string>& recipes) const;
-  FrameState frame_state() const;
+  FrameState frame_state(const Program& program) const;
+  antialias::Options antialias() const;
   image::Result<std::unique_ptr<image::ImageWriter>> open_writer(std::size_t file,
                                                                  const std::string& name,
                                                                  const image::ImageSpec& spec);
@@ -42,10 +44,11 @@ class RenderJob {
   const RenderOptions& options_;
   const SourceMap& sources_;
   const FileId file_;
+  const antialias::Programs programs_;
   const std::shared_ptr<const Program> program_;
   const std::vector<Knob> knobs_;
   InputImages& images_;
-  const Textures* textures_;  // null with surfaces, which have their own
+  const Textures& textures_;
   Surfaces* surfaces_;  // null: the image plane alone
   Signals& signals_;
   RunStatus status_;  // of all frames: once cancelled, no other begins

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
 
 #include "image/sequence.h"
 
@@ -113,6 +112,44 @@ void read_write_options(const Arguments& arguments, RenderOptions& options) {
   if (arguments.has("float")) options.storage = image::PixelType::float32;
 }
 
+// `procedural`, `none`, `supersample=N`; --samples N is the last.
+void read_antialias(const Arguments& arguments, RenderOptions& options) {
+  antialias::Options& antialias = options.antialias;
+  constexpr int most_samples = 65536;
+  const auto supersample = [&](const OptionValue& count) {
+    antialias.mode = antialias::Mode::supersample;
+    antialias.samples = parse_integer(count, 1, most_samples);
+    options.antialias_text = fmt::format("supersample={}", antialias.samples);
+  };
+  if (const auto value = arguments.value("antialias")) {
+    constexpr std::string_view many = "supersample=";
+    if (value->text == "none")
+      antialias.mode = antialias::Mode::none;
+    else if (value->text.starts_with(many))
+      supersample({value->text.substr(many.size()), value->origin});
+    else if (value->text != "procedural")
+      throw usage_error(fmt::format("{} is procedural, supersample=N or none, not `{}`",
+                                    value->origin, value->text));
+    if (antialias.mode != antialias::Mode::supersample) options.antialias_text = value->text;
+    if (arguments.has("samples"))
+      throw usage_error("--antialias and --samples exclude each other");
+  }
+  if (const auto value = arguments.value("samples")) supersample(*value);
+  if (const auto value = arguments.value("filter")) {
+    const std::size_t star = std::min(value->text.find('*'), value->text.size());
+    const auto kind = antialias::filter_named(value->text.substr(0, star));
+    double width = 1;
+    if (!kind || (star < value->text.size() &&
+                  (!read_number(value->text.substr(star + 1), width) || !(width >= 0.25) ||
+                   !(width <= 4))))
+      throw usage_error(fmt::format("{} is not `{}`", value->origin, value->text),
+                        "cubic, box, disc, cone, paraboloid or gauss, and as cubic*1.5 a width "
+                        "from 0.25 to 4");
+    antialias.filter = antialias::Filter(*kind, static_cast<float>(width));
+    options.filter_text = value->text;
+  }
+}
+
 }  // namespace
 
 RenderOptions render_options(const Session& session) {
@@ -144,16 +181,9 @@ RenderOptions render_options(const Session& session) {
     options.seed = static_cast<std::uint32_t>(parse_integer(*value, 0, 1 << 24));
 
   options.on = arguments.text_or("on", "");
-  options.camera = arguments.text_or("camera", "");
-  options.scene = arguments.text_or("scene", "");
-  if (std::filesystem::path(options.program).extension() == ".toml") {
-    if (!options.scene.empty()) throw usage_error("the program is a scene, and --scene names another");
-    options.scene = options.program;
-  }
-  if (!options.camera.empty() && options.on.empty() && options.scene.empty())
-    throw usage_error("--camera needs something to look at", "--on SHAPE or --scene FILE");
 
   // How it is computed.
+  read_antialias(arguments, options);
   if (const auto value = arguments.value("threads"))
     options.threads = parse_integer(*value, 0, 1024);
   if (const auto value = arguments.value("tile")) options.tile = parse_integer(*value, 1, 4096);

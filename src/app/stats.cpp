@@ -43,6 +43,13 @@ std::string stats_text(const RunStats& s) {
   out += operations_text(s.operations, "");
   out += fmt::format("samples       {:.0f} in {} frame{}\n", s.samples, s.frames,
                      s.frames == 1 ? "" : "s");
+  const auto pixels = [&](std::int64_t count) {
+    return fmt::format("{} ({:.2f}%)", count, 100 * double(count) / std::max(s.samples, 1.0));
+  };
+  if (s.antialias.filtered > 0)
+    out += fmt::format("antialias     {} pixels filtered, {} blended, {} supersampled\n",
+                       pixels(s.antialias.filtered), pixels(s.antialias.blended),
+                       pixels(s.antialias.supersampled));
   if (s.compute_seconds > 0)
     out += fmt::format("speed         {:.2f} million samples per second, {:.1f} ns each\n",
                        s.samples / s.compute_seconds * 1e-6,
@@ -74,6 +81,10 @@ std::string stats_json(const RunStats& s) {
           {"samples_looked_at", s.operations.samples_looked_at}}}}},
       {"frames", s.frames},
       {"samples", s.samples},
+      {"antialias",
+       {{"filtered", s.antialias.filtered},
+        {"blended", s.antialias.blended},
+        {"supersampled", s.antialias.supersampled}}},
       {"samples_per_second", s.compute_seconds > 0 ? s.samples / s.compute_seconds : 0.0},
       {"compute_seconds", s.compute_seconds},
       {"total_seconds", s.total_seconds},

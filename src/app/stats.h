@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "antialias/refine.h"
 #include "app/operations.h"
 #include "stream/program.h"
 
@@ -13,6 +14,7 @@ struct RunStats {
   OperationCounts operations;
   int width = 0, threads = 0;  // vector width; threads used
   int frames = 0;
+  antialias::Counts antialias;  // pixels, of all frames
   double samples = 0;
   double compute_seconds =
       0;  // in the executor, with reading tiles and handing them to the writers

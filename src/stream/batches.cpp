@@ -126,8 +126,13 @@ class Run {
     if (skipped(slot.batch)) return;
     guard([&] {
       plan_.fill(slot.batch, slot.inputs.pointers());
-      program_.kernel->run_samples(state_, slot.status, slot.scratch, slot.inputs.pointers().data(),
-                                   slot.outputs.pointers().data(), plan_.count(slot.batch));
+      if (plan_.compute)
+        plan_.compute(slot.batch, slot.inputs.pointers(), slot.outputs.pointers(), slot.scratch,
+                      slot.status);
+      else
+        program_.kernel->run_samples(state_, slot.status, slot.scratch,
+                                     slot.inputs.pointers().data(),
+                                     slot.outputs.pointers().data(), plan_.count(slot.batch));
       if (slot.status.failed_check >= 0) fail(slot);
     });
   }

@@ -21,6 +21,11 @@ struct BatchPlan {
   // Writes the planes of sample-rate inputs (the others are null). Called from several threads at
   // once.
   std::function<void(std::int64_t batch, std::span<float* const> inputs)> fill;
+  // What is done with a filled batch; empty: the kernel is run on it. `status` is the batch's own:
+  // cancelled with the run, and a failed check there ends the run.
+  std::function<void(std::int64_t batch, std::span<float* const> inputs,
+                     std::span<float* const> outputs, Scratch& scratch, RunStatus& status)>
+      compute;
   // Takes the results. Called from several threads at once unless `ordered`.
   std::function<void(std::int64_t batch, std::span<float* const> outputs)> drain;
   bool ordered = false;          // drain gets the batches one at a time and in order

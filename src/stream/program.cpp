@@ -23,32 +23,42 @@ class Clock {
 
 }  // namespace
 
-std::shared_ptr<const Program> compile(SourceMap& sources, FileId file, const LowerHost& host,
-                                       const CompileOptions& options, Diagnostics& diagnostics) {
-  auto program = std::make_shared<Program>();
+std::optional<CompiledFront> compile_front(SourceMap& sources, FileId file, const LowerHost& host,
+                                           const CompileOptions& options,
+                                           Diagnostics& diagnostics) {
+  CompiledFront front;
   Clock clock;
 
   // Text to tree.
   const lang::Program tree = lang::parse(sources, file, diagnostics);
-  program->times.parse = clock.lap();
+  front.program.times.parse = clock.lap();
   if (diagnostics.has_errors()) {
     add_later_errors(sources, tree, host, options.lower, diagnostics);
-    return nullptr;
+    return std::nullopt;
   }
 
   // Tree to IR.
   Lowered lowered = lower_program(sources, tree, host, options.lower, diagnostics);
-  program->times.lower = clock.lap();
-  if (diagnostics.has_errors()) return nullptr;
-  program->knobs = std::move(lowered.knobs);
-  program->outputs = std::move(lowered.outputs);
-  program->reads = std::move(lowered.reads);
-  if (options.after_pass) options.after_pass("lower", lowered.module);
+  front.program.times.lower = clock.lap();
+  if (diagnostics.has_errors()) return std::nullopt;
+  front.program.knobs = std::move(lowered.knobs);
+  front.program.outputs = std::move(lowered.outputs);
+  front.program.reads = std::move(lowered.reads);
+  front.module = std::move(lowered.module);
+  if (options.after_pass) options.after_pass("lower", front.module);
+  return front;
+}
+
+std::expected<std::shared_ptr<const Program>, std::string> compile_back(
+    CompiledFront front, const CompileOptions& options) {
+  auto program = std::make_shared<Program>(std::move(front.program));
+  Clock clock;
 
   // IR to IR.
-  const passes::PipelineOptions pipeline{.optimize = options.optimize, .after_pass = options.after_pass};
-  program->split =
-      std::make_shared<const passes::SplitModule>(passes::run_pipeline(std::move(lowered.module), pipeline));
+  const passes::PipelineOptions pipeline{.optimize = options.optimize,
+                                         .after_pass = options.after_pass};
+  program->split = std::make_shared<const passes::SplitModule>(
+      passes::run_pipeline(std::move(front.module), pipeline));
   program->times.passes = clock.lap();
 
   // IR to kernel.
@@ -57,15 +67,22 @@ std::shared_ptr<const Program> compile(SourceMap& sources, FileId file, const Lo
   } else {
     CodegenStats stats;
     auto kernel = compile_kernel(*program->split, options.codegen, &stats);
-    if (!kernel) {
-      diagnostics.error("codegen", Span{}, kernel.error());
-      return nullptr;
-    }
+    if (!kernel) return std::unexpected(kernel.error());
     program->kernel = std::move(*kernel);
     program->times.from_cache = stats.from_cache;
   }
   program->times.codegen = clock.lap();
   return program;
+}
+
+std::shared_ptr<const Program> compile(SourceMap& sources, FileId file, const LowerHost& host,
+                                       const CompileOptions& options, Diagnostics& diagnostics) {
+  auto front = compile_front(sources, file, host, options, diagnostics);
+  if (!front) return nullptr;
+  auto program = compile_back(std::move(*front), options);
+  if (program) return *program;
+  diagnostics.error("codegen", Span{}, program.error());
+  return nullptr;
 }
 
 }  // namespace pse

@@ -1,7 +1,9 @@
 // From text to something that runs: the whole compiler behind one call, and what a host needs to know of the result.
 #pragma once
 
+#include <expected>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "codegen/kernel.h"
@@ -39,5 +41,16 @@ struct Program {
 // Compiles file `file` of `sources`. Null after errors, which are in `diagnostics`.
 std::shared_ptr<const Program> compile(SourceMap& sources, FileId file, const LowerHost& host, const CompileOptions& options,
                                        Diagnostics& diagnostics);
+
+// The first half of it: text to the IR as the lowering leaves it.
+struct CompiledFront {
+  Program program;  // without split and kernel
+  ir::Module module;
+};
+std::optional<CompiledFront> compile_front(SourceMap& sources, FileId file, const LowerHost& host,
+                                           const CompileOptions& options, Diagnostics& diagnostics);
+// The second half: passes and kernel. The error is a sentence for the user.
+std::expected<std::shared_ptr<const Program>, std::string> compile_back(
+    CompiledFront front, const CompileOptions& options);
 
 }  // namespace pse

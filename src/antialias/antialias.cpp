@@ -1,0 +1,209 @@
+// Tiles with aprons as batches; each is computed, compared and refined within one batch.
+#include "antialias/antialias.h"
+
+#include <chrono>
+#include <mutex>
+#include <stdexcept>
+
+#include "stream/planes.h"
+#include "stream/tiling.h"
+
+namespace pse::antialias {
+namespace {
+
+std::int64_t size_of(const Rect& rect) { return std::int64_t{rect.width()} * rect.height(); }
+
+// A program with what it takes to run it at any place.
+struct Placed {
+  FrameState state;
+  std::unique_ptr<SampleSource> samples;
+  std::optional<PlaceRunner> runner;
+
+  Placed(const Program& program, const Host& host, RunStatus& status)
+      : state(host.state(program)), samples(host.samples(program.module())) {
+    program.kernel->run_frame(state, status);
+    runner.emplace(program, state, *samples);
+  }
+};
+
+class Execution {
+ public:
+  Execution(const Programs& programs, const Host& host, const Options& antialias,
+            const TileSource& source, const TileSink& sink, const ExecuteOptions& options,
+            RunStatus& status, Counts& counts)
+      : programs_(programs),
+        host_(host),
+        antialias_(antialias),
+        source_(source),
+        sink_(sink),
+        options_(options),
+        status_(status),
+        counts_(counts),
+        tiling_(options.window, options.tile_width, options.tile_height) {}
+
+  RunResult run() {
+    const auto start = std::chrono::steady_clock::now();
+    RunResult result = compute();
+    result.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+  }
+
+ private:
+  RunResult compute() {
+    // What holds for the whole frame.
+    const Program& shown = *programs_.shown;
+    FrameState state = host_.state(shown);
+    shown.kernel->run_frame(state, status_);
+    if (status_.failed_check >= 0) return {RunEnd::failed, status_.failed_check, -1, -1, 0};
+    if (status_.cancel) return {RunEnd::cancelled};
+    RunStatus unchecked;
+    const Placed quiet(*programs_.quiet, host_, unchecked);
+    const bool anywhere = quiet.samples->anywhere();
+    procedural_ = antialias_.mode == Mode::procedural && programs_.has_paths() && anywhere;
+    supersample_ = antialias_.mode == Mode::supersample;
+    apron_ = !procedural_ ? 0 : antialias_.filter.reach() > 1.01f ? 2 : 1;
+
+    const Refiner all(*quiet.runner, nullptr, antialias_, programs_.outputs);
+    BatchPlan plan;
+    plan.batches = tiling_.count();
+    plan.capacity = (std::min(options_.tile_width, options_.window.width()) + 2 * apron_) *
+                    std::int64_t{std::min(options_.tile_height, options_.window.height()) +
+                                 2 * apron_};
+    plan.count = [&](std::int64_t tile) { return size_of(area(tile)); };
+    plan.fill = [&](std::int64_t tile, std::span<float* const> planes) {
+      const Rect rect = area(tile);
+      source_({rect, size_of(rect), planes});
+    };
+    plan.compute = [&](std::int64_t number, std::span<float* const> inputs,
+                       std::span<float* const> outputs, Scratch& scratch, RunStatus& status) {
+      if (programs_.quiet != programs_.shown && apron_ > 0) {
+        run_checks(state, number, inputs, status);
+        if (status.failed_check >= 0 || status.cancel) return;
+        programs_.quiet->kernel->run_samples(quiet.state, status, scratch, inputs.data(),
+                                             outputs.data(), size_of(area(number)));
+      } else {
+        shown.kernel->run_samples(state, status, scratch, inputs.data(), outputs.data(),
+                                  size_of(area(number)));
+      }
+      if (status.failed_check >= 0 || status.cancel) return;
+      const Tile tile{tiling_.rect(number), area(number), outputs, programs_.outputs};
+      if (supersample_) return put(tile, all.supersample(pixels_of(tile.rect), status));
+      if (!procedural_) return;
+      Counts counts;
+      Refined refined = edges().refine(tile, status, counts);
+      cut_apron(tile);
+      put({tile.rect, tile.rect, outputs, programs_.outputs}, refined);
+      const std::lock_guard lock(mutex_);
+      counts_ += counts;
+    };
+    plan.drain = [&](std::int64_t number, std::span<float* const> planes) {
+      const Rect rect = tiling_.rect(number);
+      sink_({rect, size_of(rect), planes});
+    };
+    plan.ordered = options_.ordered_sink;
+    plan.memory_limit = options_.memory_limit;
+    plan.threads = options_.threads;
+    plan.progress = options_.progress;
+    quiet_ = &quiet;
+    const BatchEnd end = run_batches(shown, state, plan, status_);
+
+    RunResult result{end.end, end.failed_check, 0, 0, 0};
+    if (end.end == RunEnd::failed) {
+      const Rect rect = tiling_.rect(end.failed_batch);
+      result.x = rect.x0 + static_cast<int>(end.failed_sample % rect.width());
+      result.y = rect.y0 + static_cast<int>(end.failed_sample / rect.width());
+    }
+    return result;
+  }
+
+  // The program with its checks on the tile alone: what is outside of the picture cannot fail.
+  void run_checks(const FrameState& state, std::int64_t number, std::span<float* const> inputs,
+                  RunStatus& status) const {
+    std::vector<bool> used;
+    for (const float* plane : inputs) used.push_back(plane != nullptr);
+    const Rect rect = tiling_.rect(number), around = area(number);
+    const Planes in(used, size_of(rect));
+    const Planes out(std::vector<bool>(programs_.shown->module().outputs.size(), true),
+                     size_of(rect));
+    const Tile tile{rect, around, {}, 0};
+    for (std::size_t p = 0; p < inputs.size(); ++p) {
+      if (inputs[p] == nullptr) continue;
+      float* to = in.pointers()[p];
+      for (int y = rect.y0; y < rect.y1; ++y, to += rect.width())
+        std::copy_n(inputs[p] + tile.at(rect.x0, y), rect.width(), to);
+    }
+    Scratch scratch;
+    programs_.shown->kernel->run_samples(state, status, scratch, in.pointers().data(),
+                                         out.pointers().data(), size_of(rect));
+  }
+
+  // A tile with its apron.
+  Rect area(std::int64_t number) const {
+    const Rect rect = tiling_.rect(number);
+    return {rect.x0 - apron_, rect.y0 - apron_, rect.x1 + apron_, rect.y1 + apron_};
+  }
+
+  // The first tile with an edge waits for its program.
+  const Refiner& edges() {
+    std::call_once(once_, [&] {
+      const auto& program = programs_.edges.get();
+      if (!program) throw std::runtime_error(program.error());
+      RunStatus unchecked;
+      edge_program_.emplace(**program, host_, unchecked);
+      refiner_.emplace(*quiet_->runner, &*edge_program_->runner, antialias_, programs_.outputs);
+    });
+    return *refiner_;
+  }
+
+  static std::vector<Pixel> pixels_of(const Rect& rect) {
+    std::vector<Pixel> pixels;
+    for (int y = rect.y0; y < rect.y1; ++y)
+      for (int x = rect.x0; x < rect.x1; ++x) pixels.push_back({x, y});
+    return pixels;
+  }
+
+  static void put(const Tile& tile, const Refined& refined) {
+    for (std::size_t o = 0; o < tile.outputs; ++o)
+      for (std::size_t i = 0; i < refined.pixels.size(); ++i)
+        tile.planes[o][tile.at(refined.pixels[i].x, refined.pixels[i].y)] = refined.values[o][i];
+  }
+
+  // Moves the tile's rows together.
+  void cut_apron(const Tile& tile) const {
+    for (std::size_t o = 0; o < programs_.outputs; ++o) {
+      float* to = tile.planes[o];
+      for (int y = tile.rect.y0; y < tile.rect.y1; ++y, to += tile.rect.width()) {
+        const float* from = tile.planes[o] + tile.at(tile.rect.x0, y);
+        std::copy(from, from + tile.rect.width(), to);
+      }
+    }
+  }
+
+  const Programs& programs_;
+  const Host& host_;
+  const Options& antialias_;
+  const TileSource& source_;
+  const TileSink& sink_;
+  const ExecuteOptions& options_;
+  RunStatus& status_;
+  Counts& counts_;
+  const Tiling tiling_;
+  int apron_ = 0;
+  bool procedural_ = false, supersample_ = false;
+  const Placed* quiet_ = nullptr;
+  std::once_flag once_;
+  std::optional<Placed> edge_program_;
+  std::optional<Refiner> refiner_;
+  std::mutex mutex_;  // of counts_
+};
+
+}  // namespace
+
+RunResult execute(const Programs& programs, const Host& host, const Options& antialias,
+                  const TileSource& source, const TileSink& sink, const ExecuteOptions& options,
+                  RunStatus& status, Counts& counts) {
+  return Execution(programs, host, antialias, source, sink, options, status, counts).run();
+}
+
+}  // namespace pse::antialias

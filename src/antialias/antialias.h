@@ -1,0 +1,38 @@
+// Procedural antialiasing (2002 chapter, "Antialiased rendering of procedural textures"): a program
+// run over a picture with clean edges at about one sample per pixel. The table of contents:
+//
+//   decisions  where the program's conditionals are
+//   path       the program with one more output: which way each sample takes
+//   derive     the program that gives the edges around a sample (rules, activity, rotate,
+//              edge_state)
+//   programs   compiling both
+//   tile       neighbours with different paths, across which the picture jumps
+//   refine     one edge: both sides and the kernel's share (filter); more: supersample (spread)
+//   places     running a program anywhere (stream/sample_source.h)
+//
+// A pixel's whole path is bifurcated, not each conditional by itself: for one edge under the kernel
+// that is the chapter's LERP, and what follows the conditional need not be linear.
+#pragma once
+
+#include <functional>
+
+#include "antialias/refine.h"
+
+namespace pse::antialias {
+
+// How to run a program of a Programs: its state, with uniforms of knobs and frame names and
+// externals set, and its sample-rate inputs anywhere.
+struct Host {
+  std::function<FrameState(const Program&)> state;
+  std::function<std::unique_ptr<SampleSource>(const ir::Module&)> samples;
+};
+
+// As pse::execute() of programs.shown, whose state the host makes; `source` fills the tiles of
+// `options.window` and, where samples are known anywhere, up to 2 pixels around it. The sink gets
+// the planes of the program's own outputs, then one without meaning where there are paths. The
+// result does not depend on tile size, threads or vector width.
+RunResult execute(const Programs& programs, const Host& host, const Options& antialias,
+                  const TileSource& source, const TileSink& sink, const ExecuteOptions& options,
+                  RunStatus& status, Counts& counts);
+
+}  // namespace pse::antialias

@@ -1,0 +1,133 @@
+// Finding cuts by operator and rate, and the kinks that bend them by a walk from uses to
+// definitions.
+#include "antialias/decisions.h"
+
+#include "passes/passes.h"
+#include "passes/rewrite.h"
+
+namespace pse::antialias {
+namespace {
+
+using ir::Function;
+using ir::Instruction;
+using ir::Op;
+using ir::Region;
+using ir::Value;
+
+// Which values a set of values is computed from. Control is left out: where it changes, there is a
+// jump already.
+class Slice {
+ public:
+  explicit Slice(const Function& function)
+      : function_(function), needed_(function.values.size()), arrays_(function.arrays.size()) {}
+
+  void need(Value value) { needed_[value] = true; }
+  bool operator[](Value value) const { return needed_[value]; }
+
+  // Until nothing changes; a loop needs a round for each value that its turns hand on.
+  void run() {
+    do {
+      changed_ = false;
+      walk(function_.body);
+    } while (changed_);
+  }
+
+ private:
+  void mark(Value value) {
+    if (needed_[value]) return;
+    needed_[value] = true;
+    changed_ = true;
+  }
+
+  void walk(const Region& region) {
+    for (auto in = region.body.rbegin(); in != region.body.rend(); ++in) visit(*in);
+  }
+
+  void visit(const Instruction& in) {
+    if (in.op == Op::if_) {
+      for (std::size_t i = 0; i < in.results.size(); ++i)
+        if (needed_[in.results[i]])
+          for (const Region& region : in.regions) mark(region.yields[i]);
+    } else if (in.op == Op::loop) {
+      for (std::size_t i = 0; i < in.results.size(); ++i) {
+        if (!needed_[in.results[i]] && !needed_[in.regions[0].params[i]] &&
+            !needed_[in.regions[1].params[i]])
+          continue;
+        mark(in.results[i]), mark(in.regions[0].params[i]), mark(in.regions[1].params[i]);
+        mark(in.operands[i]), mark(in.regions[1].yields[i]);
+      }
+    } else if (in.op == Op::array_store) {
+      if (arrays_[static_cast<std::size_t>(in.imm)]) mark(in.operands[1]);
+    } else {
+      bool wanted = false;
+      for (const Value result : in.results) wanted = wanted || needed_[result];
+      if (!wanted) return;
+      for (const Value operand : in.operands) mark(operand);
+      if (in.op == Op::array_load && !arrays_[static_cast<std::size_t>(in.imm)])
+        arrays_[static_cast<std::size_t>(in.imm)] = changed_ = true;
+    }
+    for (const Region& region : in.regions) walk(region);
+  }
+
+  const Function& function_;
+  std::vector<bool> needed_;
+  std::vector<bool> arrays_;
+  bool changed_ = false;
+};
+
+template <class Visit>
+void for_each(const Region& region, const Visit& visit) {
+  for (const Instruction& in : region.body) {
+    visit(in);
+    for (const Region& inner : in.regions) for_each(inner, visit);
+  }
+}
+
+}  // namespace
+
+Cut cut_of(Op op) {
+  switch (op) {
+    case Op::flt:
+    case Op::fle:
+      return Cut::compare;
+    case Op::ffloor:
+    case Op::fceil:
+    case Op::ftrunc:
+    case Op::f2i:
+      return Cut::whole;
+    case Op::fround:
+      return Cut::half;
+    case Op::fmin:
+    case Op::fmax:
+    case Op::fabs:
+      return Cut::kink;
+    default:
+      return Cut::none;
+  }
+}
+
+Decisions find_decisions(ir::Module& module) {
+  passes::assign_rates(module);
+  const Function& main = module.main();
+  Decisions found;
+  found.jumps.resize(main.values.size());
+  found.kinks.resize(main.values.size());
+  Slice bends(main);
+  const auto differs = [&](const Instruction& in) {
+    return main.values[in.result()].rate == ir::Rate::sample;
+  };
+  for_each(main.body, [&](const Instruction& in) {
+    const Cut cut = cut_of(in.op);
+    if (cut == Cut::none || cut == Cut::kink || !differs(in)) return;
+    found.jumps[in.result()] = found.any = true;
+    for (const Value operand : in.operands) bends.need(operand);
+  });
+  bends.run();
+  for_each(main.body, [&](const Instruction& in) {
+    if (cut_of(in.op) == Cut::kink && differs(in) && bends[in.result()])
+      found.kinks[in.result()] = true;
+  });
+  return found;
+}
+
+}  // namespace pse::antialias

@@ -1,0 +1,33 @@
+// Where a program's value jumps or bends: the conditionals of the 2002 chapter's "Antialiased
+// rendering of procedural textures", and what else makes an edge. Looked for before calls are
+// inlined, when the program's own statements, library functions included, stand in the main
+// function and the bodies of builtins (whose floors and choices are continuous as a whole) in
+// functions of their own.
+#pragma once
+
+#include <vector>
+
+#include "ir/module.h"
+
+namespace pse::antialias {
+
+enum class Cut : std::uint8_t {
+  none,
+  compare,  // a < b, a <= b: jumps where a - b is 0
+  whole,    // floor, ceil, trunc, conversion to an integer: jumps at whole numbers
+  half,     // round: jumps halfway between them
+  kink,     // min, max, abs: bends where a - b, or a, is 0
+};
+Cut cut_of(ir::Op op);
+
+// The cuts of the main function that differ from sample to sample, by the value that they give.
+struct Decisions {
+  std::vector<bool> jumps;  // all but kinks
+  std::vector<bool> kinks;  // those that some jump depends on: they bend an edge
+  bool any = false;         // whether there is a jump
+};
+
+// Gives the module's values their rates, and finds the decisions.
+Decisions find_decisions(ir::Module& module);
+
+}  // namespace pse::antialias

@@ -1,0 +1,51 @@
+// The reconstruction kernel of a pixel: what share of it lies on one side of an edge, and where to
+// sample it. 2002 chapter, "The High-Contrast Filter": the kernel is circularly symmetric, so the
+// share depends on the distance d alone; its cubic S(d) is that of the kernel
+// (12 / pi) sqrt(1/4 - r^2) of radius 1/2, whose projection on a line is 6 (1/4 - t^2).
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+namespace pse::antialias {
+
+enum class FilterKind : std::uint8_t {
+  cubic,       // the chapter's, radius 1/2
+  box,         // the pixel's square
+  disc,        // a disc of radius 1, the same everywhere
+  cone,        // 1 - r, radius 1
+  paraboloid,  // 1 - r^2, radius 1
+  gauss,       // standard deviation 1/2, cut at 2
+};
+std::optional<FilterKind> filter_named(std::string_view name);
+
+class Filter {
+ public:
+  // `scale` widens the kernel.
+  explicit Filter(FilterKind kind = FilterKind::cubic, float scale = 1)
+      : kind_(kind), scale_(scale) {}
+
+  // No weight beyond this distance from the centre along the direction (nx, ny), in pixels.
+  float reach(float nx, float ny) const;
+  float reach() const;  // in any direction
+
+  // The share on the side of a straight edge that the normal (nx, ny) points to, where the centre
+  // is d pixels on that side; 0 to 1, exact. Of the chapter's kernel 0 for d < -1/2, 1 for d > 1/2,
+  // else 3 (d + 1/2)^2 - 2 (d + 1/2)^3.
+  float share(float d, float nx, float ny) const;
+
+  // The first moment of that side along the normal: its centroid is moment / share away from the
+  // centre. For kernels symmetric about their centre it is also the second moment of the chord
+  // along the edge, so that an edge of curvature k gains or loses k / 2 * moment.
+  float moment(float d, float nx, float ny) const;
+
+  // An offset from the centre for a point of the unit square, such that all have equal weight.
+  std::array<float, 2> place(float u, float v) const;
+
+ private:
+  FilterKind kind_;
+  float scale_;
+};
+
+}  // namespace pse::antialias

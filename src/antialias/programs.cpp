@@ -1,0 +1,52 @@
+// Compiling them from one lowered module.
+#include "antialias/programs.h"
+
+#include "antialias/derive.h"
+#include "antialias/path.h"
+#include "passes/passes.h"
+
+namespace pse::antialias {
+
+std::expected<Programs, std::string> compile_programs(CompiledFront front,
+                                                      const CompileOptions& options, Mode mode) {
+  Programs programs;
+  programs.outputs = front.module.outputs.size();
+  const auto finish = [&](CompiledFront&& with_checks) -> std::expected<Programs, std::string> {
+    std::optional<CompiledFront> without;
+    if (mode != Mode::none) {
+      without = with_checks;
+      remove_checks(without->module);
+    }
+    auto shown = compile_back(std::move(with_checks), options);
+    if (!shown) return std::unexpected(shown.error());
+    programs.shown = programs.quiet = *shown;
+    // Checks that cannot fail are gone by now.
+    if (mode == Mode::none || !has_checks((*shown)->module())) return std::move(programs);
+    auto quiet = compile_back(std::move(*without), {.codegen = options.codegen,
+                                                    .interpret = options.interpret,
+                                                    .optimize = options.optimize});
+    if (!quiet) return std::unexpected(quiet.error());
+    programs.quiet = *quiet;
+    return std::move(programs);
+  };
+  if (mode != Mode::procedural) return finish(std::move(front));
+
+  // Decisions are those of what the outputs need.
+  CompiledFront copy = front;
+  passes::remove_dead(copy.module);
+  const Decisions decisions = find_decisions(copy.module);
+  if (!decisions.any) return finish(std::move(front));
+  CompiledFront edges = copy;
+  programs.edges = std::async(std::launch::async, [edges = std::move(edges), decisions,
+                                                   options]() mutable {
+                     remove_checks(edges.module);
+                     derive_edges(edges.module, decisions);
+                     return compile_back(std::move(edges), {.codegen = options.codegen,
+                                                            .interpret = options.interpret,
+                                                            .optimize = options.optimize});
+                   }).share();
+  add_path(copy.module, decisions);
+  return finish(std::move(copy));
+}
+
+}  // namespace pse::antialias

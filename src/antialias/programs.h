@@ -1,0 +1,39 @@
+// The programs that antialiasing runs in place of one: the program with its paths, and its edges.
+#pragma once
+
+#include <future>
+
+#include "antialias/filter.h"
+#include "stream/program.h"
+
+namespace pse::antialias {
+
+enum class Mode : std::uint8_t {
+  none,         // one sample in the middle of each pixel
+  procedural,   // edges found in the program; more samples only where that is not enough
+  supersample,  // the same number of samples for each pixel
+};
+
+struct Options {
+  Mode mode = Mode::procedural;
+  int samples = 64;  // of a pixel that is supersampled
+  Filter filter;
+};
+
+struct Programs {
+  // The program. With paths, its last output is "$path", behind `outputs` of its own.
+  std::shared_ptr<const Program> shown;
+  // The same without checks: for samples at places that the user has not asked for.
+  std::shared_ptr<const Program> quiet;
+  std::size_t outputs = 0;
+  // Its edges (antialias/derive.h), compiled meanwhile; not valid where the program has no jumps.
+  std::shared_future<std::expected<std::shared_ptr<const Program>, std::string>> edges;
+
+  bool has_paths() const { return edges.valid(); }
+};
+
+// The error is a sentence for the user.
+std::expected<Programs, std::string> compile_programs(CompiledFront front,
+                                                      const CompileOptions& options, Mode mode);
+
+}  // namespace pse::antialias

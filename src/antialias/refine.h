@@ -1,0 +1,61 @@
+// What a tile's pixels become once the edges through them are known: the midway list of the 2002
+// chapter's "More Detailed Description", pixel by pixel.
+#pragma once
+
+#include "antialias/places.h"
+#include "antialias/programs.h"
+#include "antialias/tile.h"
+
+namespace pse::antialias {
+
+// How many pixels were treated in which way.
+struct Counts {
+  std::int64_t filtered = 0;      // looked at by the high-contrast filter: an edge may be near
+  std::int64_t blended = 0;       // one edge: both sides, by the kernel's share
+  std::int64_t supersampled = 0;  // run at more samples
+
+  Counts& operator+=(const Counts& other) {
+    filtered += other.filtered, blended += other.blended, supersampled += other.supersampled;
+    return *this;
+  }
+};
+
+// The picture after antialiasing at some pixels: values[o][i] is output o at pixels[i].
+struct Refined {
+  std::vector<Pixel> pixels;
+  Results values;
+};
+
+class Refiner {
+ public:
+  // `edges` may be null: then everything is supersampled.
+  Refiner(const PlaceRunner& program, const PlaceRunner* edges, const Options& options,
+          std::size_t outputs)
+      : program_(program), edges_(edges), options_(options), outputs_(outputs) {}
+
+  // The pixels of a tile whose values change, in the procedural mode. Every value depends on the
+  // pixel alone.
+  Refined refine(const Tile& tile, RunStatus& status, Counts& counts) const;
+
+  // All pixels of a list at options.samples samples each.
+  Refined supersample(std::vector<Pixel> pixels, RunStatus& status) const;
+
+ private:
+  struct Crossing;
+  std::vector<Crossing> find_crossings(const std::vector<Pixel>& pixels,
+                                       std::vector<Pixel>& unclear, RunStatus& status) const;
+  void follow(std::vector<Crossing>& crossings, std::vector<Pixel>& unclear,
+              RunStatus& status) const;
+  void blend(const Tile& tile, const std::vector<Crossing>& crossings, Refined& result,
+             std::vector<Pixel>& unclear, RunStatus& status) const;
+  Refined sample(std::vector<Pixel> pixels, std::uint32_t first, std::uint32_t last,
+                 std::vector<bool>* uneven, RunStatus& status) const;
+  void settle(std::vector<Pixel> unclear, Refined& result, RunStatus& status) const;
+
+  const PlaceRunner& program_;
+  const PlaceRunner* edges_;
+  const Options& options_;
+  std::size_t outputs_;
+};
+
+}  // namespace pse::antialias

@@ -1,6 +1,7 @@
 // `pse render`: from arguments to files.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "app/compile_settings.h"
@@ -11,6 +12,7 @@
 #include "app/render_job.h"
 #include "app/report.h"
 #include "app/surfaces.h"
+#include "app/text_file.h"
 #include "lang/parser.h"
 
 namespace pse::app {
@@ -50,6 +52,21 @@ CompileOptions compile_options(const RenderOptions& options, const InputImages& 
   return compile;
 }
 
+// Both lists; the second counts where they name the same.
+std::vector<KnobSetting> joined(std::vector<KnobSetting> first,
+                                const std::vector<KnobSetting>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+std::vector<KnobSetting> known(std::vector<KnobSetting> settings, const std::vector<Knob>& knobs) {
+  std::erase_if(settings, [&](const KnobSetting& setting) {
+    return std::none_of(knobs.begin(), knobs.end(),
+                        [&](const Knob& knob) { return knob.name == setting.name; });
+  });
+  return settings;
+}
+
 }  // namespace
 
 Exit render_command(Session& session) {
@@ -71,49 +88,68 @@ Exit render_command(Session& session) {
   std::unique_ptr<Surfaces> surfaces;
   if (wants_surfaces(options)) surfaces = std::make_unique<Surfaces>(options, session);
 
-  // Compile.
-  Diagnostics diagnostics;
-  Diagnostics ignored;  // compile() parses again and reports
-  const lang::Program tree = lang::parse(program.sources, program.file, ignored);
-  CompileOptions compile_with = compile_options(options, images, surfaces.get(), settings, tree);
-  LowerHost host = module_host(program.path, session);
-  Textures textures(session, program.path, options.write.working);
-  textures.answer(host);
-  if (!stage.empty()) {
-    const std::string text = emit_stage(stage, program, host, compile_with, diagnostics);
-    session.console.print(text);
-    report(diagnostics, program.sources, session);
-    return Exit::ok;
-  }
+  // Compile: one program, or those of a scene.
   OperationCounts operations;
-  if (!stats.empty())
-    compile_with.after_pass = [&](std::string_view pass, const ir::Module& module) {
-      count_written(pass, module, operations);
-    };
-  auto front = compile_front(program.sources, program.file, host, compile_with, diagnostics);
-  report(diagnostics, program.sources, session);
-  if (!front) return Exit::program;
-  auto programs =
-      antialias::compile_programs(
-      std::move(*front), compile_with,
-      surfaces ? antialias::Mode::none : options.antialias.mode);
-  if (!programs) throw Failure(Exit::program, programs.error());
-  const std::shared_ptr<const Program>& compiled = programs->shown;
-  const std::vector<Knob> knobs = apply_settings(compiled->knobs, settings, session.console);
-
-  textures.load(compiled->module());
+  antialias::Programs programs;
+  std::vector<SurfaceProgram> parts;
+  std::vector<ProgramRequest> requests(1);
+  if (surfaces) requests = surfaces->programs();
+  for (const ProgramRequest& request : requests) {
+    FileId file = program.file;
+    const std::string path = request.file.empty() ? program.path : request.file;
+    if (!request.file.empty()) file = program.sources.add(path, read_text_file(path));
+    const std::vector<KnobSetting> knobs = joined(request.knobs, settings);
+    Diagnostics diagnostics;
+    Diagnostics ignored;  // compile() parses again and reports
+    const lang::Program tree = lang::parse(program.sources, file, ignored);
+    CompileOptions compile_with = compile_options(options, images, surfaces.get(), knobs, tree);
+    LowerHost host = module_host(path, session);
+    auto textures = std::make_unique<Textures>(session, path, options.write.working);
+    textures->answer(host);
+    if (!stage.empty()) {
+      ProgramFile shown{program.sources, file, path};
+      session.console.print(emit_stage(stage, shown, host, compile_with, diagnostics));
+      report(diagnostics, shown.sources, session);
+      continue;
+    }
+    if (!stats.empty())
+      compile_with.after_pass = [&](std::string_view pass, const ir::Module& module) {
+        count_written(pass, module, operations);
+      };
+    auto front = compile_front(program.sources, file, host, compile_with, diagnostics);
+    report(diagnostics, program.sources, session);
+    if (!front) return Exit::program;
+    auto compiled_programs = antialias::compile_programs(
+        std::move(*front), compile_with,
+        surfaces ? antialias::Mode::none : options.antialias.mode);
+    if (!compiled_programs) throw Failure(Exit::program, compiled_programs.error());
+    programs = std::move(*compiled_programs);
+    auto compiled = programs.shown;
+    // Of several programs each takes the knobs that it has.
+    const bool several = requests.size() > 1;
+    std::vector<Knob> set = apply_settings(
+        compiled->knobs, several ? joined(request.knobs, known(settings, compiled->knobs)) : knobs,
+        session.console);
+    textures->load(compiled->module());
+    parts.push_back({std::move(compiled), std::move(set), std::move(textures)});
+  }
+  if (!stage.empty()) return Exit::ok;
+  const std::vector<Knob> knobs = parts.front().knobs;
+  auto whole = parts.front().program;
+  std::unique_ptr<Textures> own_textures;
   if (surfaces) {
-    std::vector<SurfaceProgram> parts;
-    parts.push_back({compiled, knobs, &textures});
-    programs->shown = programs->quiet = surfaces->combine(std::move(parts));
-    programs->edges = {};
-  } else if (const std::string problem = needs_a_scene(compiled->module()); !problem.empty()) {
-    throw usage_error(problem, "--on SHAPE or --scene FILE");
+    whole = surfaces->combine(std::move(parts));
+    programs.shown = programs.quiet = whole;
+    if (requests.size() > 1) apply_settings(whole->knobs, settings, session.console);
+  } else {
+    own_textures = std::move(parts.front().textures);
+    if (const std::string problem = needs_a_scene(whole->module()); !problem.empty())
+      throw usage_error(problem, "--on SHAPE or --scene FILE");
   }
 
   // Run.
-  RenderJob job(session, options, program.sources, program.file, *programs, knobs, images, textures,
-                surfaces.get(), signals);
+  RenderJob job(session, options, program.sources, program.file, programs, knobs, images,
+                own_textures.get(), surfaces.get(), signals);
   const Exit exit = job.run();
   if (!stats.empty()) {
     RunStats numbers = job.stats();

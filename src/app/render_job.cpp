@@ -40,7 +40,7 @@ std::vector<int> choose_frames(const RenderOptions& options) {
 
 RenderJob::RenderJob(Session& session, const RenderOptions& options, const SourceMap& sources,
                      FileId file, antialias::Programs programs, std::vector<Knob> knobs,
-                     InputImages& images, const Textures& textures, Surfaces* surfaces,
+                     InputImages& images, const Textures* textures, Surfaces* surfaces,
                      Signals& signals)
     : session_(session),
       options_(options),
@@ -119,7 +119,8 @@ Exit RenderJob::run_frame(int index, int frame) {
   // What this frame is made from, and whether it is there already.
   RenderContext context{options_, sources_, file_,   *program_,
                         knobs_,   plane_,   window_, images_.identities()};
-  for (const auto& texture : textures_.identities()) context.inputs.push_back(texture);
+  if (textures_ != nullptr)
+    for (const auto& texture : textures_->identities()) context.inputs.push_back(texture);
   if (surfaces_ != nullptr)
     for (const auto& file : surfaces_->identities()) context.inputs.push_back(file);
   std::vector<std::string> recipes;
@@ -186,7 +187,7 @@ bool RenderJob::skip_done(int frame, const std::vector<std::string>& recipes) co
 
 FrameState RenderJob::frame_state(const Program& program) const {
   FrameState state = plane_state(program.module(), plane_, knobs_);
-  if (surfaces_ == nullptr) state.externals = textures_.functions();
+  if (textures_ != nullptr) state.externals = textures_->functions();
   return state;
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 
 #include "image/sequence.h"
 
@@ -181,6 +182,14 @@ RenderOptions render_options(const Session& session) {
     options.seed = static_cast<std::uint32_t>(parse_integer(*value, 0, 1 << 24));
 
   options.on = arguments.text_or("on", "");
+  options.camera = arguments.text_or("camera", "");
+  options.scene = arguments.text_or("scene", "");
+  if (std::filesystem::path(options.program).extension() == ".toml") {
+    if (!options.scene.empty()) throw usage_error("the program is a scene, and --scene names another");
+    options.scene = options.program;
+  }
+  if (!options.camera.empty() && options.on.empty() && options.scene.empty())
+    throw usage_error("--camera needs something to look at", "--on SHAPE or --scene FILE");
 
   // How it is computed.
   read_antialias(arguments, options);

@@ -39,8 +39,9 @@ struct RenderOptions {
   double fps = 24;
   std::uint32_t seed = 0;
 
-  std::string on;     // --on: one shape or mesh
-  std::string scene;  // --scene, or a program whose name ends in .toml
+  std::string on;      // --on: one shape or mesh
+  std::string camera;  // --camera
+  std::string scene;   // --scene, or the program where its name ends in .toml
 
   antialias::Options antialias;
   std::string antialias_text = "procedural", filter_text = "cubic";  // as given, for the recipe

@@ -1,7 +1,11 @@
-// From --on to a scene, and from programs to one program.
+// From --on or a scene file to objects, and from programs to one program.
 #include "app/surfaces.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <numbers>
 
 #include "app/input_images.h"
 #include "app/knobs.h"
@@ -10,45 +14,123 @@
 namespace pse::app {
 namespace {
 
-[[noreturn]] void throw_failure(const surface::ShapeError& error) {
-  throw Failure(error.usage ? Exit::usage : Exit::input, error.message, error.hint);
-}
+namespace fs = std::filesystem;
 
 // One light from above on the left, behind the eye.
 surface::Light usual_light() { return {{-0.55, 0.75, 0.6}, false, {1, 1, 1}, 0}; }
 
+// Beside the file that names it, else as the session finds it.
+std::string find_beside(const std::string& owner, const std::string& name,
+                        const Session& session) {
+  std::error_code error;
+  const fs::path beside = fs::path(owner).parent_path() / name;
+  if (fs::path(name).is_relative() && fs::exists(beside, error)) return beside.string();
+  return session.find_file(name);
+}
+
+// The eye turned round the target.
+surface::Camera orbited(surface::Camera camera, double degrees) {
+  const double angle = degrees * std::numbers::pi / 180;
+  const surface::Vec3 axis = normalized(camera.up), arm = camera.eye - camera.target;
+  camera.eye = camera.target + std::cos(angle) * arm + std::sin(angle) * cross(axis, arm) +
+               (1 - std::cos(angle)) * dot(axis, arm) * axis;
+  return camera;
+}
+
 }  // namespace
 
-bool wants_surfaces(const RenderOptions& options) { return !options.on.empty(); }
+bool is_scene_name(const std::string& file) { return fs::path(file).extension() == ".toml"; }
 
-Surfaces::Surfaces(const RenderOptions& options, Session& session) {
-  identities_.emplace_back("--on " + options.on, "");
-  auto spec = surface::parse_shape(options.on);
-  if (!spec) throw_failure(spec.error());
-  if (!surface::is_shape_name(spec->shape)) {
-    spec->shape = session.find_file(spec->shape);
-    identities_.emplace_back(spec->shape, file_identity(spec->shape));
+bool wants_surfaces(const RenderOptions& options) {
+  return !options.on.empty() || !options.scene.empty();
+}
+
+Surfaces::Surfaces(const RenderOptions& options, Session& session) : console_(session.console) {
+  if (!options.on.empty() && !options.scene.empty())
+    throw usage_error("--on and a scene file exclude each other");
+  if (!options.scene.empty()) {
+    read_scene(options, session);
+  } else {
+    const auto spec = surface::parse_shape(options.on);
+    if (!spec) throw usage_error("--on: " + spec.error().message, spec.error().hint);
+    identities_.emplace_back("--on " + options.on, "");
+    scene_.objects.push_back({.name = spec->shape, .shape = *spec});
   }
-  const auto made = surface::make_shape(*spec, true);
-  if (!made) throw_failure(made.error());
-  for (const std::string& note : made->notes) session.console.warning(note);
-  scene_ = std::make_shared<surface::Scene>(
-      std::vector<surface::Object>{{spec->shape, made->shape, {}, 0}},
-      std::vector<surface::Light>{usual_light()});
+  if (!options.camera.empty()) {
+    scene_.camera = parse_camera(options.camera);
+    identities_.emplace_back("--camera " + options.camera, "");
+  }
+  if (!scene_.has_lights) scene_.lights = {usual_light()};
+  make_shapes(options.scene.empty(), session);
+  program_of_ = {scene_.background.empty()
+                     ? -1
+                     : program_index(scene_.background, {}, options, session)};
+  for (const SceneObject& object : scene_.objects)
+    program_of_.push_back(program_index(object.program, object.knobs, options, session));
+}
+
+void Surfaces::read_scene(const RenderOptions& options, Session& session) {
+  const std::string path = session.find_file(options.scene);
+  scene_ = read_scene_file(path);
+  identities_.emplace_back(path, file_identity(path));
+}
+
+void Surfaces::make_shapes(bool fit_meshes, Session& session) {
+  for (SceneObject& object : scene_.objects) {
+    if (!surface::is_shape_name(object.shape.shape)) {
+      const std::string found = find_beside(scene_.path, object.shape.shape, session);
+      object.shape.shape = found;
+      identities_.emplace_back(found, file_identity(found));
+    }
+    const auto made = surface::make_shape(object.shape, fit_meshes);
+    if (!made) {
+      const surface::ShapeError& error = made.error();
+      if (scene_.path.empty())
+        throw Failure(error.usage ? Exit::usage : Exit::input,
+                      (error.usage ? "--on: " : "") + error.message, error.hint);
+      throw Failure(Exit::input,
+                    fmt::format("{}:{}: {}", scene_.path, error.line, error.message), error.hint);
+    }
+    for (const std::string& note : made->notes) console_.warning(note);
+    shapes_.push_back(made->shape);
+  }
+}
+
+// Objects with the same program and knobs share one.
+int Surfaces::program_index(const std::string& written, const std::vector<KnobSetting>& knobs,
+                            const RenderOptions& options, const Session& session) {
+  ProgramRequest request;
+  const std::string& name = written.empty() ? scene_.program : written;
+  if (!name.empty())
+    request.file = find_beside(scene_.path, name, session);
+  else if (is_scene_name(options.program))
+    throw Failure(Exit::input, fmt::format("{}: an object has no program", scene_.path),
+                  R"(add program = "marble.pse", to the object or above all tables)");
+  request.knobs = knobs;
+  const auto same = [&](const ProgramRequest& other) {
+    return other.file == request.file &&
+           std::equal(other.knobs.begin(), other.knobs.end(), request.knobs.begin(),
+                      request.knobs.end(), [](const KnobSetting& a, const KnobSetting& b) {
+                        return a.name == b.name && a.text == b.text;
+                      });
+  };
+  const auto found = std::find_if(requests_.begin(), requests_.end(), same);
+  if (found != requests_.end()) return static_cast<int>(found - requests_.begin());
+  if (!request.file.empty())
+    identities_.emplace_back(request.file, file_identity(request.file));
+  requests_.push_back(std::move(request));
+  return static_cast<int>(requests_.size()) - 1;
 }
 
 std::vector<StreamName> Surfaces::names() const {
-  return surface::surface_names(scene_->lights().size());
+  return surface::surface_names(scene_.lights.size());
 }
 
 std::shared_ptr<const Program> Surfaces::combine(std::vector<SurfaceProgram> programs) {
   programs_ = std::move(programs);
   std::vector<std::shared_ptr<const Program>> compiled;
   for (const SurfaceProgram& part : programs_) compiled.push_back(part.program);
-  std::vector<int> program_of = {-1};
-  for (std::size_t i = 0; i < scene_->objects(); ++i)
-    program_of.push_back(scene_->object(i).program);
-  shader_ = std::make_shared<surface::Shader>(std::move(compiled), std::move(program_of));
+  shader_ = std::make_shared<surface::Shader>(std::move(compiled), program_of_);
   for (const auto what : {surface::TraceCall::What::trace, surface::TraceCall::What::radiance,
                           surface::TraceCall::What::visible})
     calls_.push_back(
@@ -56,18 +138,38 @@ std::shared_ptr<const Program> Surfaces::combine(std::vector<SurfaceProgram> pro
   return surface::Shader::combined(shader_);
 }
 
-surface::Lens Surfaces::lens(const ImagePlane& plane) const {
+// What is not told is chosen so that all objects are seen.
+surface::Camera Surfaces::camera(const ImagePlane& plane, const surface::Scene& scene) const {
   const double aspect = double(plane.width) / plane.height;
-  return {camera_.value_or(surface::framing(scene_->bounds(), aspect)), plane.width, plane.height};
+  const SceneCamera asked = scene_.camera.value_or(SceneCamera{});
+  surface::Camera camera = asked.camera;
+  if (!asked.has_eye) {
+    const surface::Camera usual = surface::framing(scene.bounds(), aspect, camera.fov);
+    camera.eye = usual.eye, camera.target = usual.target;
+  } else if (!asked.has_target && scene.bounds().bounded()) {
+    camera.target = scene.bounds().centre();
+  }
+  return orbited(camera, asked.orbit * plane.frame / plane.fps);
 }
 
 void Surfaces::begin_frame(const ImagePlane& plane) {
-  lens_ = std::make_unique<surface::Lens>(lens(plane));
+  // Place the objects.
+  std::vector<surface::Object> objects;
+  for (std::size_t i = 0; i < shapes_.size(); ++i)
+    objects.push_back({scene_.objects[i].name, shapes_[i],
+                       scene_.objects[i].placement.at_time(plane.frame / plane.fps),
+                       program_of_[i + 1]});
+  placed_ = std::make_shared<surface::Scene>(std::move(objects), scene_.lights);
+  const surface::Camera seen = camera(plane, *placed_);
+  lens_ = std::make_unique<surface::Lens>(seen, plane.width, plane.height);
+  warn_inside(seen);
+
+  // Ready the programs.
   std::vector<FrameState> states;
   for (const SurfaceProgram& part : programs_) {
     const ir::Module& module = part.program->module();
     FrameState state = plane_state(module, plane, part.knobs);
-    surface::set_scene_uniforms(module, *scene_, *lens_, state);
+    surface::set_scene_uniforms(module, *placed_, *lens_, state);
     state.externals = part.textures->functions();
     for (std::size_t i = 0; i < module.externals.size(); ++i)
       if (const auto what = surface::TraceCall::of(module.externals[i].name))
@@ -75,11 +177,19 @@ void Surfaces::begin_frame(const ImagePlane& plane) {
                               calls_[static_cast<std::size_t>(*what)].get()};
     states.push_back(std::move(state));
   }
-  shader_->begin_frame(std::move(states), scene_, *lens_);
+  shader_->begin_frame(std::move(states), placed_, *lens_);
 }
 
-std::shared_ptr<const SampleSource> Surfaces::source(const ir::Module& module) const {
-  return std::make_shared<surface::SurfaceSource>(module, scene_, *lens_);
+void Surfaces::warn_inside(const surface::Camera& camera) {
+  const std::vector<std::string> around = placed_->around(camera.eye);
+  if (around.empty() || warned_) return;
+  warned_ = true;
+  console_.warning(fmt::format("the camera is inside {}: what is seen is its back",
+                               fmt::join(around, ", ")));
+}
+
+std::unique_ptr<SampleSource> Surfaces::source(const ir::Module& module) const {
+  return std::make_unique<surface::SurfaceSource>(module, placed_, *lens_);
 }
 
 std::vector<std::pair<std::string, std::string>> Surfaces::identities() const {

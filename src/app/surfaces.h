@@ -1,24 +1,28 @@
-// Rendering visible surfaces: the scene that --on or --scene asks for, the programs of its objects,
-// and what a frame needs of both.
+// Rendering visible surfaces: the scene that --on or a scene file asks for, the programs of its
+// objects, and what a frame needs of both.
 #pragma once
 
 #include <optional>
 
 #include "app/knobs.h"
-#include "app/program_file.h"
 #include "app/render_options.h"
+#include "app/scene_file.h"
 #include "app/textures.h"
-#include "surface/scene.h"
 #include "surface/shader.h"
 #include "surface/trace_call.h"
 
 namespace pse::app {
 
-// What an object, or the background, is shaded by.
+// A program that some objects, or the background, are shaded by.
+struct ProgramRequest {
+  std::string file;                 // as found; empty: the command line's
+  std::vector<KnobSetting> knobs;  // the scene's; the command line's come after them
+};
+
 struct SurfaceProgram {
   std::shared_ptr<const Program> program;
   std::vector<Knob> knobs;
-  const Textures* textures = nullptr;
+  std::unique_ptr<Textures> textures;
 };
 
 class Surfaces {
@@ -26,31 +30,47 @@ class Surfaces {
   // Reads the scene and its meshes. Throws Failure (usage, input).
   Surfaces(const RenderOptions& options, Session& session);
 
+  // The programs to compile, in the order in which combine() takes them.
+  const std::vector<ProgramRequest>& programs() const { return requests_; }
   // What programs may read of the scene.
   std::vector<StreamName> names() const;
   // All programs as one, for the executor.
   std::shared_ptr<const Program> combine(std::vector<SurfaceProgram> programs);
 
-  // Sets the scene up for a frame; the states are filled as for the plane.
+  // Sets the scene up for a frame of this picture.
   void begin_frame(const ImagePlane& plane);
-  std::shared_ptr<const SampleSource> source(const ir::Module& module) const;
+  std::unique_ptr<SampleSource> source(const ir::Module& module) const;
+  // Files read, with their identities.
   std::vector<std::pair<std::string, std::string>> identities() const;
+  // The file whose text is the picture's recipe where there is no program: the scene's.
+  const std::string& path() const { return scene_.path; }
 
  private:
-  surface::Lens lens(const ImagePlane& plane) const;
+  void read_scene(const RenderOptions& options, Session& session);
+  void make_shapes(bool fit_meshes, Session& session);
+  int program_index(const std::string& written, const std::vector<KnobSetting>& knobs,
+                    const RenderOptions& options, const Session& session);
+  surface::Camera camera(const ImagePlane& plane, const surface::Scene& scene) const;
+  void warn_inside(const surface::Camera& camera);
 
-  std::shared_ptr<const surface::Scene> scene_;
-  std::optional<surface::Camera> camera_;
+  Console& console_;
+  SceneFile scene_;
+  std::vector<std::shared_ptr<const surface::Shape>> shapes_;  // of the objects
+  std::vector<int> program_of_;                                // of the background, the objects
+  std::vector<ProgramRequest> requests_;
   std::vector<SurfaceProgram> programs_;
   std::vector<std::unique_ptr<surface::TraceCall>> calls_;
   std::shared_ptr<surface::Shader> shader_;
+  std::shared_ptr<const surface::Scene> placed_;  // of the frame
   std::unique_ptr<surface::Lens> lens_;
   std::vector<std::pair<std::string, std::string>> identities_;
+  bool warned_ = false;
 };
 
 // Whether these arguments ask for surfaces at all.
 bool wants_surfaces(const RenderOptions& options);
-
+// Whether the file is a scene by its name.
+bool is_scene_name(const std::string& file);
 // What is wrong with running the module without a scene; empty: nothing.
 std::string needs_a_scene(const ir::Module& module);
 

@@ -266,6 +266,8 @@ Typed Lowering::lower_member(const MemberExpr& member, const Span& span) {
     return {};
   }
 
+  if (const auto part = hit_part(base, member.name)) return *part;
+
   // Each letter names a component; all letters come from one of the three sets.
   std::vector<ir::Value> parts;
   for (const std::string_view letters : {"xyzw", "rgba", "uv"}) {

@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* names[] = {"transpose", "count", "size",    "min",    "max",   "select",
                                  "any",    "all",  "array",     "texture", "volume", "number", "vector", "identity",
-                                 "isnan",  "isfinite"};
+                                 "isnan",  "isfinite", "trace",    "radiance", "visible"};
 
 }  // namespace
 
@@ -158,6 +158,7 @@ Typed Lowering::intrinsic_texture(std::vector<CallArgument>& arguments, const Sp
 Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument>& arguments, const Span& span) {
   if (name == "texture") return intrinsic_texture(arguments, span);
   if (name == "volume") return intrinsic_volume(arguments, span);
+  if (is_scene_call(name)) return intrinsic_scene(name, arguments, span);
   if (name == "min" || name == "max" || name == "any" || name == "all") return intrinsic_fold(name, arguments, span);
   const auto needs = [&](std::size_t count) {
     if (arguments.size() == count) return true;

@@ -111,6 +111,11 @@ class Lowering {
   Typed intrinsic_volume(std::vector<CallArgument>& arguments, const Span& span);
   Typed intrinsic_fold(const std::string& name, std::vector<CallArgument>& arguments, const Span& span);
 
+  // intrinsics_scene.cpp: rays into the scene.
+  static bool is_scene_call(const std::string& name);
+  Typed intrinsic_scene(const std::string& name, std::vector<CallArgument>& arguments, const Span& span);
+  std::optional<Typed> hit_part(const Typed& base, const std::string& name);
+
   // arrays.cpp
   Typed new_array(const std::string& name, std::int32_t capacity);
   Typed load_element(const Typed& array, ir::Value index, const Span& span, bool checked);

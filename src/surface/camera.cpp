@@ -5,8 +5,9 @@
 
 namespace pse::surface {
 
-Camera framing(const Box& box, double aspect) {
+Camera framing(const Box& box, double aspect, double fov) {
   Camera camera;
+  camera.fov = fov;
   const Box seen = box.bounded() ? box : Box{{-1, -1, -1}, {1, 1, 1}};
   camera.target = seen.centre();
   const double half = camera.fov * std::numbers::pi / 360;

@@ -12,7 +12,7 @@ struct Camera {
 };
 
 // A camera that shows all of a box from the front, a little from above and from the right.
-Camera framing(const Box& box, double aspect);
+Camera framing(const Box& box, double aspect, double fov);
 
 // A camera for pictures of one size. `eye` and `target` differ, `up` is not parallel to the view.
 class Lens {

@@ -54,8 +54,8 @@ class MeshShape : public Shape {
     if (!(t > ray.begin && t < ray.end)) return;
     // Where in the triangle; on its edge where rounding went beyond.
     const Vec3 q = cross(from, ray.direction);
-    double v = std::clamp(dot(ac, q) / along, 0.0, 1.0);
-    double w = std::clamp(-dot(ab, q) / along, 0.0, 1.0);
+    double v = std::clamp(-dot(ac, q) / along, 0.0, 1.0);
+    double w = std::clamp(dot(ab, q) / along, 0.0, 1.0);
     if (v + w > 1) v /= v + w, w = 1 - v;
     const double u = 1 - v - w;
     hit.t = t;

@@ -90,19 +90,19 @@ Exit render_command(Session& session) {
 
   // Compile: one program, or those of a scene.
   OperationCounts operations;
-  antialias::Programs programs;
+  std::optional<antialias::Programs> programs;
   std::vector<SurfaceProgram> parts;
-  std::vector<ProgramRequest> requests(1);
-  if (surfaces) requests = surfaces->programs();
+  const std::vector<ProgramRequest> requests =
+      surfaces ? surfaces->programs() : std::vector<ProgramRequest>(1);
   for (const ProgramRequest& request : requests) {
     FileId file = program.file;
     const std::string path = request.file.empty() ? program.path : request.file;
     if (!request.file.empty()) file = program.sources.add(path, read_text_file(path));
-    const std::vector<KnobSetting> knobs = joined(request.knobs, settings);
+    const std::vector<KnobSetting> given = joined(request.knobs, settings);
     Diagnostics diagnostics;
-    Diagnostics ignored;  // compile() parses again and reports
+    Diagnostics ignored;  // compile_front() parses again and reports
     const lang::Program tree = lang::parse(program.sources, file, ignored);
-    CompileOptions compile_with = compile_options(options, images, surfaces.get(), knobs, tree);
+    CompileOptions compile_with = compile_options(options, images, surfaces.get(), given, tree);
     LowerHost host = module_host(path, session);
     auto textures = std::make_unique<Textures>(session, path, options.write.working);
     textures->answer(host);
@@ -119,37 +119,36 @@ Exit render_command(Session& session) {
     auto front = compile_front(program.sources, file, host, compile_with, diagnostics);
     report(diagnostics, program.sources, session);
     if (!front) return Exit::program;
-    auto compiled_programs = antialias::compile_programs(
-        std::move(*front), compile_with,
-        surfaces ? antialias::Mode::none : options.antialias.mode);
-    if (!compiled_programs) throw Failure(Exit::program, compiled_programs.error());
-    programs = std::move(*compiled_programs);
-    auto compiled = programs.shown;
+    auto made = antialias::compile_programs(std::move(*front), compile_with,
+                                            surfaces ? antialias::Mode::none
+                                                     : options.antialias.mode);
+    if (!made) throw Failure(Exit::program, made.error());
     // Of several programs each takes the knobs that it has.
-    const bool several = requests.size() > 1;
-    std::vector<Knob> set = apply_settings(
-        compiled->knobs, several ? joined(request.knobs, known(settings, compiled->knobs)) : knobs,
+    const std::vector<Knob>& own = made->shown->knobs;
+    std::vector<Knob> knobs = apply_settings(
+        own, requests.size() > 1 ? joined(request.knobs, known(settings, own)) : given,
         session.console);
-    textures->load(compiled->module());
-    parts.push_back({std::move(compiled), std::move(set), std::move(textures)});
+    textures->load(made->shown->module());
+    parts.push_back({made->shown, std::move(knobs), std::move(textures)});
+    programs = std::move(*made);
   }
   if (!stage.empty()) return Exit::ok;
   const std::vector<Knob> knobs = parts.front().knobs;
-  auto whole = parts.front().program;
+  const Textures no_textures(session, program.path, options.write.working);
   std::unique_ptr<Textures> own_textures;
   if (surfaces) {
-    whole = surfaces->combine(std::move(parts));
-    programs.shown = programs.quiet = whole;
+    const auto whole = surfaces->combine(std::move(parts));
+    programs = antialias::Programs{whole, whole, whole->module().outputs.size(), {}};
     if (requests.size() > 1) apply_settings(whole->knobs, settings, session.console);
   } else {
     own_textures = std::move(parts.front().textures);
-    if (const std::string problem = needs_a_scene(whole->module()); !problem.empty())
+    if (const std::string problem = needs_a_scene(programs->shown->module()); !problem.empty())
       throw usage_error(problem, "--on SHAPE or --scene FILE");
   }
 
   // Run.
-  RenderJob job(session, options, program.sources, program.file, programs, knobs, images,
-                own_textures.get(), surfaces.get(), signals);
+  RenderJob job(session, options, program.sources, program.file, *programs, knobs, images,
+                own_textures ? *own_textures : no_textures, surfaces.get(), signals);
   const Exit exit = job.run();
   if (!stats.empty()) {
     RunStats numbers = job.stats();

@@ -40,7 +40,7 @@ std::vector<int> choose_frames(const RenderOptions& options) {
 
 RenderJob::RenderJob(Session& session, const RenderOptions& options, const SourceMap& sources,
                      FileId file, antialias::Programs programs, std::vector<Knob> knobs,
-                     InputImages& images, const Textures* textures, Surfaces* surfaces,
+                     InputImages& images, const Textures& textures, Surfaces* surfaces,
                      Signals& signals)
     : session_(session),
       options_(options),
@@ -119,8 +119,7 @@ Exit RenderJob::run_frame(int index, int frame) {
   // What this frame is made from, and whether it is there already.
   RenderContext context{options_, sources_, file_,   *program_,
                         knobs_,   plane_,   window_, images_.identities()};
-  if (textures_ != nullptr)
-    for (const auto& texture : textures_->identities()) context.inputs.push_back(texture);
+  for (const auto& texture : textures_.identities()) context.inputs.push_back(texture);
   if (surfaces_ != nullptr)
     for (const auto& file : surfaces_->identities()) context.inputs.push_back(file);
   std::vector<std::string> recipes;
@@ -149,11 +148,11 @@ Exit RenderJob::run_frame(int index, int frame) {
   TileSource seen;
   if (surfaces_ != nullptr) {
     surfaces_->begin_frame(plane_);
-    seen = surface::at_pixel_centres(surfaces_->source(program_->module()));
+    seen = surface::at_pixel_centres(surfaces_->samples(program_->module(), plane_));
   }
   const auto source = [&](const TileView& tile) {
-    coordinates(tile), pixels(tile);
-    if (seen) seen(tile);
+    seen ? seen(tile) : coordinates(tile);
+    pixels(tile);
   };
   const RunResult result = compute(source, files_.empty() ? nullptr : &writer);
   stats_.compute_seconds += result.seconds;
@@ -187,7 +186,7 @@ bool RenderJob::skip_done(int frame, const std::vector<std::string>& recipes) co
 
 FrameState RenderJob::frame_state(const Program& program) const {
   FrameState state = plane_state(program.module(), plane_, knobs_);
-  if (textures_ != nullptr) state.externals = textures_->functions();
+  if (surfaces_ == nullptr) state.externals = textures_.functions();
   return state;
 }
 
@@ -230,7 +229,10 @@ RunResult RenderJob::compute(const TileSource& source, FrameWriter* writer) {
   const int tile = choose_tile(options_, window_);
   const antialias::Host host{
       [this](const Program& program) { return frame_state(program); },
-      [this](const ir::Module& module) { return image_plane_samples(module, plane_); }};
+      [this](const ir::Module& module) {
+        return surfaces_ != nullptr ? surfaces_->samples(module, plane_)
+                                    : image_plane_samples(module, plane_);
+      }};
   return antialias::execute(programs_, host, antialias(), source, sink,
                             {.window = window_,
                              .tile_width = tile,
@@ -245,7 +247,9 @@ RunResult RenderJob::compute(const TileSource& source, FrameWriter* writer) {
 // Pixels of images are known at their centres only.
 antialias::Options RenderJob::antialias() const {
   antialias::Options antialias = options_.antialias;
-  if (surfaces_ != nullptr) antialias.mode = antialias::Mode::none;
+  // What is procedural looks into the program alone, and surfaces have outlines.
+  if (surfaces_ != nullptr && antialias.mode == antialias::Mode::procedural)
+    antialias.mode = antialias::Mode::none;
   for (const StreamName& name : images_.names())
     if (std::ranges::find(program_->reads, name.name) != program_->reads.end())
       antialias.mode = antialias::Mode::none;

@@ -18,7 +18,7 @@ class RenderJob {
   // `images` has the first frame open.
   RenderJob(Session& session, const RenderOptions& options, const SourceMap& sources, FileId file,
             antialias::Programs programs, std::vector<Knob> knobs, InputImages& images,
-            const Textures* textures, Surfaces* surfaces, Signals& signals);
+            const Textures& textures, Surfaces* surfaces, Signals& signals);
 
   // All frames. Throws Failure; returns how a stopped or failed run should end.
   Exit run();
@@ -48,7 +48,7 @@ class RenderJob {
   const std::shared_ptr<const Program> program_;
   const std::vector<Knob> knobs_;
   InputImages& images_;
-  const Textures* textures_;  // null with surfaces, which have their own
+  const Textures& textures_;
   Surfaces* surfaces_;  // null: the image plane alone
   Signals& signals_;
   RunStatus status_;  // of all frames: once cancelled, no other begins

@@ -28,6 +28,21 @@ std::string find_beside(const std::string& owner, const std::string& name,
   return session.find_file(name);
 }
 
+// Two sources; the second has the last word.
+class Both : public SampleSource {
+ public:
+  Both(std::unique_ptr<SampleSource> first, std::unique_ptr<SampleSource> second)
+      : first_(std::move(first)), second_(std::move(second)) {}
+  void fill(std::span<const double> x, std::span<const double> y,
+            std::span<float* const> planes) const override {
+    first_->fill(x, y, planes), second_->fill(x, y, planes);
+  }
+  bool anywhere() const override { return first_->anywhere() && second_->anywhere(); }
+
+ private:
+  std::unique_ptr<SampleSource> first_, second_;
+};
+
 // The eye turned round the target.
 surface::Camera orbited(surface::Camera camera, double degrees) {
   const double angle = degrees * std::numbers::pi / 180;
@@ -188,8 +203,11 @@ void Surfaces::warn_inside(const surface::Camera& camera) {
                                fmt::join(around, ", ")));
 }
 
-std::unique_ptr<SampleSource> Surfaces::source(const ir::Module& module) const {
-  return std::make_unique<surface::SurfaceSource>(module, placed_, *lens_);
+std::unique_ptr<SampleSource> Surfaces::samples(const ir::Module& module,
+                                                const ImagePlane& plane) const {
+  return std::make_unique<Both>(
+      image_plane_samples(module, plane),
+      std::make_unique<surface::SurfaceSource>(module, placed_, *lens_));
 }
 
 std::vector<std::pair<std::string, std::string>> Surfaces::identities() const {

@@ -39,7 +39,8 @@ class Surfaces {
 
   // Sets the scene up for a frame of this picture.
   void begin_frame(const ImagePlane& plane);
-  std::unique_ptr<SampleSource> source(const ir::Module& module) const;
+  // The plane's names and the surfaces', at any places of the frame that was begun.
+  std::unique_ptr<SampleSource> samples(const ir::Module& module, const ImagePlane& plane) const;
   // Files read, with their identities.
   std::vector<std::pair<std::string, std::string>> identities() const;
   // The file whose text is the picture's recipe where there is no program: the scene's.

@@ -4,6 +4,24 @@
 
 namespace pse::surface {
 
+Vec3 light_value(const Light& light, LightPart part, const Vec3& place) {
+  constexpr double far = 1e4;  // where a light without a place is said to be
+  switch (part) {
+    case LightPart::direction:
+      return normalized(light.is_lamp ? light.position - place : light.position);
+    case LightPart::color: {
+      if (!light.is_lamp) return light.color;
+      const Vec3 way = light.position - place;
+      return (1 / std::max(dot(way, way), 1e-12)) * light.color;
+    }
+    case LightPart::position:
+      return light.is_lamp ? light.position : place + far * normalized(light.position);
+    case LightPart::radius:
+      return {light.radius * (light.is_lamp ? 1 : far), 0, 0};
+  }
+  return {};
+}
+
 Scene::Scene(std::vector<Object> objects, std::vector<Light> lights) : lights_(std::move(lights)) {
   for (Object& object : objects) {
     Placed placed;

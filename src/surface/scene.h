@@ -21,6 +21,10 @@ struct Light {
   double radius = 0;        // of the lamp; of a far light: half the angle it is seen at, radians
 };
 
+// What a light is at a place: the direction towards it, what arrives, where it is, how large.
+enum class LightPart { direction, color, position, radius };
+Vec3 light_value(const Light& light, LightPart part, const Vec3& place);
+
 // The first meeting of a ray with the scene.
 struct Hit {
   double t = std::numeric_limits<double>::infinity();

@@ -9,6 +9,10 @@ namespace {
 
 constexpr double far_away = 1e10;  // depth where nothing is, as other renderers write it
 
+Vec3 rounded(const Vec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
 Vec3 axis(const Affine& map, int which) {
   return normalized(which == 0 ? map.x : which == 1 ? map.y : map.z);
 }
@@ -110,23 +114,18 @@ Vec3 NameWriter::value(const Sighting& s, const Wanted& wanted) const {
       // The side of a square as large as the pixel's image on the surface.
       double size = s.width;
       if (seen) size = std::sqrt(length(cross(shift(s, right_), shift(s, up_))));
-      return {wanted.what == What::pixelsize ? size : 0.5 / size, 0, 0};
+      return {wanted.what == What::pixelsize ? size : 0.5 / static_cast<float>(size), 0, 0};
     }
     case What::dpdx: return seen ? shift(s, right_) : Vec3{};
     case What::dpdy: return seen ? -shift(s, up_) : Vec3{};
     case What::axis_x: return seen ? axis(*map, 0) : Vec3{1, 0, 0};
     case What::axis_y: return seen ? axis(*map, 1) : Vec3{0, 1, 0};
     case What::axis_z: return seen ? axis(*map, 2) : Vec3{0, 0, 1};
-    case What::light_direction:
-      return normalized(lit().is_lamp ? lit().position - h.place : lit().position);
-    case What::light_color: {
-      if (!lit().is_lamp) return lit().color;
-      const Vec3 way = lit().position - h.place;
-      return (1 / std::max(dot(way, way), 1e-12)) * lit().color;
-    }
-    case What::light_position:
-      return lit().is_lamp ? lit().position : h.place + 1e4 * normalized(lit().position);
-    case What::light_radius: return {lit().radius * (lit().is_lamp ? 1 : 1e4), 0, 0};
+    // From the place as it is stored, so that a G-buffer gives the same.
+    case What::light_direction: return light_value(lit(), LightPart::direction, rounded(h.place));
+    case What::light_color: return light_value(lit(), LightPart::color, rounded(h.place));
+    case What::light_position: return light_value(lit(), LightPart::position, rounded(h.place));
+    case What::light_radius: return light_value(lit(), LightPart::radius, rounded(h.place));
   }
   return {};
 }

@@ -1,0 +1,73 @@
+// A picture of surfaces: channels that say where each pixel's surface is, which way it faces and
+// whose it is, traced here or by another renderer. A program is run on it without tracing again
+// (1985: "input images", point and normal among their names).
+#pragma once
+
+#include <optional>
+
+#include "image/layers.h"
+#include "surface/surface_source.h"
+
+namespace pse::surface {
+
+// Which layer of a picture brings which name: "normal" -> "ViewLayer_Normal".
+using SurfaceLayers = std::map<std::string, std::string>;
+
+// By the usual names of layers; the part after the last `_` or `.` counts, in any letters: P, Pref,
+// Position, N, Normal, uv, id, IndexOB, Z, Depth. Empty unless there are a position and a normal.
+SurfaceLayers surface_layers(std::span<const image::Layer> layers);
+
+// What does not change from pixel to pixel.
+struct GBufferFrame {
+  std::optional<Vec3> eye;
+  std::vector<Light> lights;
+};
+// As attributes of a file, and back. Attributes that are not there leave the fields alone.
+std::map<std::string, std::string> gbuffer_attributes(const GBufferFrame& frame);
+void read_gbuffer_attributes(const std::map<std::string, std::string>& attributes,
+                             GBufferFrame& frame);
+
+// The names that a G-buffer brings: those of its layers, and what follows from them.
+std::vector<StreamName> gbuffer_names(const SurfaceLayers& layers,
+                                      std::span<const image::Layer> all,
+                                      const GBufferFrame& frame);
+
+// A source of samples at pixel centres.
+class GBuffer : public SampleSource {
+ public:
+  // `picture` holds the channels of the layers (others may be missing); `all` are the layers of its
+  // file, whose channels are looked up by their names in `spec`.
+  GBuffer(const ir::Module& module, const SurfaceLayers& layers,
+          std::span<const image::Layer> all, const image::ImageSpec& spec,
+          std::shared_ptr<const image::Image> picture, const GBufferFrame& frame);
+  void fill(std::span<const double> x, std::span<const double> y,
+            std::span<float* const> planes) const override;
+  bool anywhere() const override { return false; }
+
+ private:
+  enum class What {
+    layer, negated, id, hit, depth, direction, view, pixelsize, pixel_freq, nothing,
+    light_direction, light_color, light_position, light_radius
+  };
+  struct Wanted {
+    std::size_t input;
+    What what;
+    std::size_t component;
+    std::size_t light;
+    const float* plane;
+  };
+  const float* plane_of(const std::string& name, std::size_t component) const;
+  Vec3 vector_at(const std::string& name, std::size_t pixel) const;
+  Vec3 direction_at(std::size_t pixel) const;
+  bool seen_at(std::size_t pixel) const;
+  double pixelsize_at(std::size_t pixel) const;
+  float value(const Wanted& wanted, std::size_t pixel) const;
+
+  std::shared_ptr<const image::Image> picture_;
+  std::map<std::string, std::vector<const float*>> planes_;
+  GBufferFrame frame_;
+  std::vector<Wanted> wanted_;
+  image::Window display_, data_;
+};
+
+}  // namespace pse::surface

@@ -48,18 +48,21 @@ std::string file_identity(const std::string& file) {
   return fmt::format("{} {}.{:09}", status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
 }
 
-InputImages::InputImages(const RenderOptions& options, const Session& session) {
+InputImages::InputImages(const RenderOptions& options, const Session& session)
+    : tables_(options, session) {
   read_.working = options.write.working;
   for (const ImageRequest& image : options.images)
     images_.push_back({image.name, session.find_file(image.file), {}, nullptr, {}});
 }
 
 bool InputImages::vary() const {
-  return std::any_of(images_.begin(), images_.end(),
+  return tables_.vary() ||
+         std::any_of(images_.begin(), images_.end(),
                      [](const Open& image) { return image::is_pattern(image.pattern); });
 }
 
 void InputImages::open(int frame) {
+  tables_.open(frame);
   for (Open& image : images_) {
     const auto file = image::frame_name(image.pattern, frame);
     if (!file) throw usage_error(file.error());
@@ -86,6 +89,7 @@ std::vector<StreamName> InputImages::names() const {
     for (const image::Layer& layer : image.layers)
       names.push_back(
           {stream_prefix(image.name) + layer.name, layer.components(), ir::Rate::sample});
+  for (StreamName& name : tables_.names()) names.push_back(std::move(name));
   return names;
 }
 
@@ -104,10 +108,11 @@ std::vector<std::pair<std::string, std::string>> InputImages::identities() const
   std::vector<std::pair<std::string, std::string>> all;
   for (const Open& image : images_)
     all.emplace_back(image.name + "=" + image.file, file_identity(image.file));
+  for (auto& table : tables_.identities()) all.push_back(std::move(table));
   return all;
 }
 
-TileSource InputImages::load(const ir::Module& module) {
+TileSource InputImages::load(const ir::Module& module, const ImagePlane& picture_plane) {
   struct Loaded {
     std::vector<Feed> feeds;
     std::vector<image::Window> displays;  // one per feed
@@ -148,7 +153,9 @@ TileSource InputImages::load(const ir::Module& module) {
       loaded->displays.push_back(spec.display);
     }
   }
-  return [loaded = std::shared_ptr<const Loaded>(loaded)](const TileView& tile) {
+  return [loaded = std::shared_ptr<const Loaded>(loaded),
+          tables = tables_.load(module, picture_plane)](const TileView& tile) {
+    tables(tile);
     for (std::size_t k = 0; k < loaded->feeds.size(); ++k)
       fill(loaded->feeds[k], loaded->displays[k].x0, loaded->displays[k].y0, tile);
   };

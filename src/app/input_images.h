@@ -1,10 +1,11 @@
 // The images given on the command line as a source of samples: each layer is a named value at every
-// pixel.
+// pixel. The tables of --insert come with them.
 #pragma once
 
 #include <memory>
 #include <optional>
 
+#include "app/inserted_tables.h"
 #include "app/render_options.h"
 #include "image/layers.h"
 #include "image/reader.h"
@@ -30,8 +31,9 @@ class InputImages {
   // Files opened for this frame, with what tells one version of a file from another.
   std::vector<std::pair<std::string, std::string>> identities() const;
 
-  // Reads the channels that the module reads, and gives what fills them in. Throws Failure (input).
-  TileSource load(const ir::Module& module);
+  // Reads the channels that the module reads, and gives what fills them in. `picture_plane` is
+  // the picture, for inserted tables. Throws Failure (input).
+  TileSource load(const ir::Module& module, const ImagePlane& picture_plane);
 
  private:
   struct Open {
@@ -42,6 +44,7 @@ class InputImages {
     std::vector<image::Layer> layers;
   };
   std::vector<Open> images_;
+  InsertedTables tables_;
   image::ReadOptions read_;
 };
 

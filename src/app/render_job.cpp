@@ -134,7 +134,7 @@ Exit RenderJob::run_frame(int index, int frame) {
     common.chromaticities = image::chromaticities_of(options_.write.working);
   common.frames_per_second = frames_.size() > 1 ? plane_.fps : 0;
   if (options_.provenance) common.attributes = provenance(context);
-  const TileSource pixels = images_.load(program_->module());
+  const TileSource pixels = images_.load(program_->module(), plane_);
   // With the apron that antialiasing looks at.
   const TileSource coordinates =
       image_plane_source(program_->module(), plane_,

@@ -54,6 +54,34 @@ void sort_words(RenderOptions& options, Arguments& arguments) {
     throw usage_error("render needs a program", "pse render PROGRAM -o FILE");
 }
 
+// --insert and --rule.
+void read_insertions(const Arguments& arguments, RenderOptions& options) {
+  for (const OptionValue& value : arguments.all("insert")) {
+    const std::size_t equals = value.text.find('=');
+    const std::string name = value.text.substr(0, equals);
+    const bool named = equals != std::string::npos && is_variable_name(name);
+    const ImageRequest table = {named ? name : "", named ? value.text.substr(equals + 1) : value.text};
+    if (table.file.empty())
+      throw usage_error(fmt::format("{}: `{}` names no file", value.origin, value.text));
+    for (const ImageRequest& other : options.insertions)
+      if (other.name == table.name)
+        throw usage_error(fmt::format("two inserted tables are called `{}`", table.name));
+    for (const ImageRequest& image : options.images)
+      if (image.name == table.name && named)
+        throw usage_error(fmt::format("an image and a table are both called `{}`", table.name));
+    options.insertions.push_back(table);
+  }
+  for (const OptionValue& value : arguments.all("rule")) {
+    const std::size_t equals = std::min(value.text.find('='), value.text.size());
+    const std::string rule = value.text.substr(std::min(equals + 1, value.text.size()));
+    const auto known = image::rule_from_name(rule);
+    if (!known || equals == 0)
+      throw usage_error(fmt::format("{} takes NAME=RULE, not `{}`", value.origin, value.text),
+                        "the rules are sum, max, mean and nearest");
+    options.rules.push_back({value.text.substr(0, equals), rule, *known});
+  }
+}
+
 void check_images(const RenderOptions& options) {
   std::vector<std::string> names;
   int standard_inputs = options.program == "-" ? 1 : 0;
@@ -158,6 +186,7 @@ RenderOptions render_options(const Session& session) {
   RenderOptions options;
   sort_words(options, arguments);
   check_images(options);
+  read_insertions(arguments, options);
   options.outputs = output_requests(arguments);
 
   // The picture.

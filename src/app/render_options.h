@@ -9,6 +9,7 @@
 #include "app/session.h"
 #include "app/values.h"
 #include "image/nan_policy.h"
+#include "image/splat.h"
 #include "image/writer.h"
 #include "stream/image_plane.h"
 
@@ -20,6 +21,12 @@ struct ImageRequest {
   std::string file;  // may be a pattern
 };
 
+// `--rule stars.z=nearest`, or `--rule stars=max` for all of its columns.
+struct InsertRule {
+  std::string name, rule_name;
+  image::Rule rule = image::Rule::sum;
+};
+
 // `-o out.exr`, `-o heat=heat.exr`, `-o N,P=data.exr`.
 struct OutputRequest {
   std::vector<std::string> variables;  // empty: what the format usually holds
@@ -29,6 +36,8 @@ struct OutputRequest {
 struct RenderOptions {
   std::string program;
   std::vector<ImageRequest> images;
+  std::vector<ImageRequest> insertions;  // --insert: tables spread over the picture
+  std::vector<InsertRule> rules;         // --rule: how their rows meet in a pixel
   std::vector<std::string> knob_words;  // Name=VALUE
   std::vector<OutputRequest> outputs;
 

@@ -102,6 +102,12 @@ void add_root(Group& root, Collector& out) {
     if (!root.taken[i]) out.add(variable_name(root.endings[i]), {root.channels[i]}, false);
 }
 
+// A table's columns keep their names.
+void add_columns(Group& root, Collector& out) {
+  for (std::size_t i = 0; i < root.channels.size(); ++i)
+    out.add(variable_name(root.endings[i]), {root.channels[i]}, false);
+}
+
 void add_group(Group& group, Collector& out) {
   const std::string name = variable_name(group.name);
   if (group.channels.size() == 1) return out.add(name, group.channels, false);
@@ -173,7 +179,10 @@ std::vector<Layer> layers_of(const ImageSpec& spec) {
   }
 
   Collector out;
-  add_root(groups.front(), out);
+  if (spec.format == "csv" || spec.format == "ply")
+    add_columns(groups.front(), out);
+  else
+    add_root(groups.front(), out);
   for (std::size_t i = 1; i < groups.size(); ++i) add_group(groups[i], out);
   return std::move(out.layers);
 }

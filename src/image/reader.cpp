@@ -9,6 +9,7 @@
 #include "image/foreign.h"
 #include "image/luma.h"
 #include "image/png_reader.h"
+#include "image/table.h"
 #include "image/to_working.h"
 
 namespace pse::image {
@@ -18,6 +19,7 @@ Result<std::unique_ptr<ImageReader>> open_stored(const Bytes& bytes, const ReadO
   if (bytes->size() == 0) return fail(ErrorKind::truncated, bytes->name() + " is empty");
   if (is_exr(*bytes)) return open_exr(bytes, options);
   if (is_png(*bytes)) return open_png(bytes, options);
+  if (is_ply(*bytes) || is_csv(*bytes)) return open_table(bytes, options);
   if (is_almost_png(*bytes))
     return fail(ErrorKind::damaged, bytes->name() + " is a PNG file whose first bytes are damaged");
   return open_foreign(bytes, options);

@@ -1,5 +1,5 @@
 // Reading images, a whole one or rows at a time, so that a huge image need never be wholly in
-// memory. open_reader() tells the format by the file's first bytes: EXR and PNG here, everything
+// memory. open_reader() tells the format by the file's first bytes: EXR and PNG here, tables (table.h), everything
 // else through OpenImageIO.
 #pragma once
 

@@ -10,6 +10,7 @@
 #include "image/foreign.h"
 #include "image/framed.h"
 #include "image/png_writer.h"
+#include "image/table.h"
 
 namespace pse::image {
 
@@ -93,7 +94,9 @@ std::string format_of_name(const std::string& path) {
   return ending;
 }
 
-bool is_display_format(std::string_view format) { return format != "exr" && format != "hdr"; }
+bool is_display_format(std::string_view format) { 
+  return format != "exr" && format != "hdr" && format != "csv";
+}
 
 Result<std::unique_ptr<ImageWriter>> open_writer(const std::string& path, const ImageSpec& spec,
                                                  const WriteOptions& options) {
@@ -127,7 +130,8 @@ Result<std::unique_ptr<ImageWriter>> open_writer(const std::string& path, const 
   Result<std::unique_ptr<ImageWriter>> writer =
       fail(ErrorKind::unsupported,
            "the name " + shown +
-               " does not say a format that can be written; use .exr, .png, .jpg or .tif");
+               " does not say a format that can be written; use .exr, .png, .jpg, .tif or .csv");
+  if (format == "csv") writer = open_csv_writer(path, framed, options);
   if (format == "png") writer = open_png_writer(path, framed, options);
   if (is_foreign_format(format)) writer = open_foreign_writer(path, format, framed, options);
   if (!writer || spec.data == spec.display) return writer;

@@ -114,9 +114,10 @@ void fill(const Feed& feed, int width, int height, const TileView& tile) {
   for (int y = tile.rect.y0; y < tile.rect.y1; ++y)
     for (int x = tile.rect.x0; x < tile.rect.x1; ++x) {
       const bool inside = x >= 0 && x < width && y >= 0 && y < height;
-      *out++ = inside ? (*feed.plane)[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                      static_cast<std::size_t>(x)]
-                      : 0.0f;
+      *out++ = inside
+                   ? (*feed.plane)[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                   static_cast<std::size_t>(x)]
+                   : 0.0f;
     }
 }
 
@@ -174,8 +175,8 @@ void InsertedTables::check_rules() const {
              });
     });
     if (!known)
-      throw usage_error(fmt::format("--rule {0}={1}: no inserted table brings `{0}`", rule.name,
-                                    rule.rule_name));
+      throw usage_error(
+          fmt::format("--rule {0}={1}: no inserted table brings `{0}`", rule.name, rule.rule_name));
   }
 }
 

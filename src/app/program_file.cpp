@@ -49,6 +49,7 @@ LowerHost module_host(const std::string& program_path, const Session& session) {
   host.volume_components = [](const std::string&, const std::string& grid, std::string&) {
     return grid == "color" || grid == "v" || grid == "velocity" ? 3 : 1;
   };
+  host.texture_size = [](const std::string&, std::string&) { return std::pair(16, 16); };
   return host;
 }
 

@@ -65,6 +65,11 @@ void Textures::answer(LowerHost& host) const {
     if (!components) error = components.error().message;
     return components.value_or(0);
   };
+  host.texture_size = [cache = cache_](const std::string& file, std::string& error) {
+    const auto size = cache->size(file);
+    if (!size) error = size.error().message;
+    return size.value_or(std::pair(0, 0));
+  };
 }
 
 void Textures::load(const ir::Module& module) {

@@ -21,8 +21,8 @@ class Lines {
   Result<bool> next(std::string_view& line) {
     ++number_;
     while (true) {
-      const auto end = std::find(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_),
-                                 buffer_.end(), '\n');
+      const auto end =
+          std::find(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_), buffer_.end(), '\n');
       if (end != buffer_.end() || at_end_) {
         if (begin_ == buffer_.size()) return false;
         const auto stop = static_cast<std::size_t>(end - buffer_.begin());
@@ -93,7 +93,8 @@ Result<void> read_names(std::string_view line, char divider, const Lines& lines,
     float number = 0;
     const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
     if (error == std::errc() && end == name.data() + name.size())
-      return fail(ErrorKind::damaged, lines.place() + "the first line of a table names its columns, " +
+      return fail(ErrorKind::damaged, lines.place() +
+                                          "the first line of a table names its columns, " +
                                           quoted(name) + " is a number");
     const bool usable = !name.empty() && name.size() <= 255 &&
                         std::all_of(name.begin(), name.end(), [](unsigned char c) {
@@ -137,10 +138,10 @@ Result<void> read_row(std::string_view line, char divider, const Lines& lines, C
     table.values[column].push_back(value);
   }
   if (column != table.names.size() || more)
-    return fail(ErrorKind::damaged,
-                lines.place() + "the row has " + (column < table.names.size() ? "fewer" : "more") +
-                    " numbers than the " + std::to_string(table.names.size()) +
-                    " columns that the first line names");
+    return fail(ErrorKind::damaged, lines.place() + "the row has " +
+                                        (column < table.names.size() ? "fewer" : "more") +
+                                        " numbers than the " + std::to_string(table.names.size()) +
+                                        " columns that the first line names");
   return {};
 }
 

@@ -49,8 +49,13 @@ Property type_of(const std::string& name) {
 
 std::string column_name(const std::string& property) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 8> known = {
-      {{"nx", "normal.x"}, {"ny", "normal.y"}, {"nz", "normal.z"}, {"red", "color.r"},
-       {"green", "color.g"}, {"blue", "color.b"}, {"diffuse_red", "color.r"},
+      {{"nx", "normal.x"},
+       {"ny", "normal.y"},
+       {"nz", "normal.z"},
+       {"red", "color.r"},
+       {"green", "color.g"},
+       {"blue", "color.b"},
+       {"diffuse_red", "color.r"},
        {"diffuse_green", "color.g"}}};
   for (const auto& [from, to] : known)
     if (property == from) return std::string(to);
@@ -89,7 +94,8 @@ Result<Header> read_header(const ByteSource& bytes) {
     } else if (word == "property" && in_points) {
       words >> kind >> name;
       if (kind == "list")
-        return fail(ErrorKind::unsupported, bytes.name() + ": the points of the PLY file have lists");
+        return fail(ErrorKind::unsupported,
+                    bytes.name() + ": the points of the PLY file have lists");
       Property property = type_of(kind);
       if (property.bytes == 0 || name.empty())
         return damaged(bytes, "`" + line + "` is no property of PLY");
@@ -100,7 +106,8 @@ Result<Header> read_header(const ByteSource& bytes) {
   if (header.properties.empty() || header.rows == 0)
     return damaged(bytes, "the PLY file has no points");
   if (!before)
-    return fail(ErrorKind::unsupported, bytes.name() + ": the points do not come first in the file");
+    return fail(ErrorKind::unsupported,
+                bytes.name() + ": the points do not come first in the file");
   return header;
 }
 
@@ -141,9 +148,9 @@ Result<void> take_rows(const ByteSource& bytes, const Header& header, Columns& t
     for (std::size_t c = 0; c < header.properties.size(); ++c) {
       double value = 0;
       if (!next(header.properties[c], value))
-        return fail(ErrorKind::truncated,
-                    bytes.name() + ": point " + std::to_string(row + 1) + " of " +
-                        std::to_string(header.rows) + " is missing or is no number");
+        return fail(ErrorKind::truncated, bytes.name() + ": point " + std::to_string(row + 1) +
+                                              " of " + std::to_string(header.rows) +
+                                              " is missing or is no number");
       const float number = meaning(value, header.properties[c], table.names[c]);
       if (!std::isfinite(number))
         return fail(ErrorKind::not_finite, bytes.name() + ": point " + std::to_string(row + 1) +
@@ -176,8 +183,8 @@ Result<Columns> read_ply(const ByteSource& bytes, const ReadLimits& limits) try 
       double(rows) * 4 * double(header->properties.size()) > double(limits.max_bytes))
     return fail(ErrorKind::too_large, bytes.name() + " has too many points");
   if (rows > data / size + 1)
-    return fail(ErrorKind::truncated, bytes.name() + " ends before its " + std::to_string(rows) +
-                                          " points");
+    return fail(ErrorKind::truncated,
+                bytes.name() + " ends before its " + std::to_string(rows) + " points");
 
   Columns table;
   for (const Property& property : header->properties) {
@@ -195,8 +202,8 @@ Result<Columns> read_ply(const ByteSource& bytes, const ReadLimits& limits) try 
   if (header->order == Order::ascii) {
     const char* text = reinterpret_cast<const char*>(content.data());
     done = take_rows(bytes, *header, table, [&](const Property&, double& value) {
-      while (at < data && (text[at] == ' ' || text[at] == '\n' || text[at] == '\r' ||
-                           text[at] == '\t'))
+      while (at < data &&
+             (text[at] == ' ' || text[at] == '\n' || text[at] == '\r' || text[at] == '\t'))
         ++at;
       const auto [end, error] = std::from_chars(text + at, text + data, value);
       at = static_cast<std::size_t>(end - text);

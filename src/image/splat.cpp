@@ -71,8 +71,8 @@ class Splatter {
                            static_cast<std::size_t>(x);
         if (w <= 0) continue;
         // Half a pixel to either side, so that places a pixel apart leave no hole.
-        const bool inner = std::fabs(x + 0.5 - place.x) <= size / 2 &&
-                           std::fabs(y + 0.5 - place.y) <= size / 2;
+        const bool inner =
+            std::fabs(x + 0.5 - place.x) <= size / 2 && std::fabs(y + 0.5 - place.y) <= size / 2;
         const bool in_front = with_nearest_ && inner && place.distance < nearest_[pixel];
         if (in_front) nearest_[pixel] = place.distance;
         put(row, pixel, w, w / middle, in_front);
@@ -98,7 +98,9 @@ class Splatter {
       const float here = columns_[c].values[row];
       switch (columns_[c].rule) {
         case Rule::sum:
-        case Rule::mean: value += static_cast<float>(here * weight); break;
+        case Rule::mean:
+          value += static_cast<float>(here * weight);
+          break;
         case Rule::max: {
           const auto shared = static_cast<float>(here * std::min(share, 1.0));
           value = first ? shared : std::max(value, shared);

@@ -1,9 +1,9 @@
 // Inserting a data base into an image: each row of a table is spread over the pixels around its
-// place, by a small kernel, so that nothing aliases and nothing gets lost wherever between pixels it
-// falls. 1985 paper, "Now What?".
+// place, by a small kernel, so that nothing aliases and nothing gets lost wherever between pixels
+// it falls. 1985 paper, "Now What?".
 //
-// The kernel is the cubic B-spline with knots a pixel apart (or `size` pixels, where a row has one),
-// along x and along y. Its values at the pixels' centres add up to 1.
+// The kernel is the cubic B-spline with knots a pixel apart (or `size` pixels, where a row has
+// one), along x and along y. Its values at the pixels' centres add up to 1.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "image/image.h"
 #include "image/error.h"
+#include "image/image.h"
 
 namespace pse::image {
 

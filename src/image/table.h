@@ -37,8 +37,8 @@ Result<Columns> read_ply(const ByteSource& bytes, const ReadLimits& limits);
 // Either as an image of rows x 1 pixels.
 Result<std::unique_ptr<ImageReader>> open_table(const Bytes& bytes, const ReadOptions& options);
 
-// Each pixel becomes a row, in reading order. The channel R is the column color.r, A alpha, Z Z; the
-// only channel of a layer is a column of the layer's name.
+// Each pixel becomes a row, in reading order. The channel R is the column color.r, A alpha, Z Z;
+// the only channel of a layer is a column of the layer's name.
 Result<std::unique_ptr<ImageWriter>> open_csv_writer(const std::string& path, const ImageSpec& spec,
                                                      const WriteOptions& options);
 

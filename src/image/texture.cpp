@@ -286,6 +286,13 @@ Result<int> TextureCache::components(const std::string& file, const std::string&
   return opened->layer.components();
 }
 
+Result<std::pair<int, int>> TextureCache::size(const std::string& file) const {
+  const auto reader = open_reader(resolve_ ? resolve_(file) : file, options_);
+  if (!reader) return std::unexpected(reader.error());
+  const Window& display = (*reader)->spec().display;
+  return std::pair(display.width(), display.height());
+}
+
 Result<std::shared_ptr<const Texture>> TextureCache::read(const std::string& file,
                                                           const std::string& layer) const {
   auto opened = open(file, layer);

@@ -79,6 +79,8 @@ class TextureCache {
   Result<std::shared_ptr<const Texture>> load(const std::string& file, const std::string& layer);
   // How many components that layer has; looks only at the header.
   Result<int> components(const std::string& file, const std::string& layer);
+  // The frame's width and height; looks only at the header.
+  Result<std::pair<int, int>> size(const std::string& file) const;
 
  private:
   struct Opened {

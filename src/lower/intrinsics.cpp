@@ -8,7 +8,7 @@ namespace pse::lower {
 namespace {
 
 constexpr const char* names[] = {"transpose", "count", "size",    "min",    "max",   "select",
-                                 "any",    "all",  "array",     "texture", "volume", "number", "vector", "identity",
+                                 "any",    "all",  "array",     "texture", "texture_size", "volume", "number", "vector", "identity",
                                  "isnan",  "isfinite", "trace",    "radiance", "visible"};
 
 }  // namespace
@@ -155,6 +155,21 @@ Typed Lowering::intrinsic_texture(std::vector<CallArgument>& arguments, const Sp
   return components == 1 ? number(results.front()) : vector(results);
 }
 
+// [width height] of an image file, known while compiling.
+Typed Lowering::intrinsic_texture_size(const std::vector<CallArgument>& arguments) {
+  const CallArgument& file = arguments.front();
+  const bool named = file.value.kind == Kind::text;
+  std::string problem = named ? "images cannot be read here"
+                              : "`texture_size` takes the name of an image file";
+  std::pair<int, int> size;
+  if (named && host_.texture_size)
+    size = host_.texture_size(file.value.text, problem);
+  if (size.first > 0)
+    return vector({constant(static_cast<float>(size.first)), constant(static_cast<float>(size.second))});
+  error(named ? "texture" : "argument-type", file.span, problem);
+  return {};
+}
+
 Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument>& arguments, const Span& span) {
   if (name == "texture") return intrinsic_texture(arguments, span);
   if (name == "volume") return intrinsic_volume(arguments, span);
@@ -166,6 +181,7 @@ Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument
                                       (count == 1 ? "" : "s") + ", this gives " + std::to_string(arguments.size()));
     return false;
   };
+  if (name == "texture_size") return needs(1) ? intrinsic_texture_size(arguments) : Typed{};
   const auto refuse = [&](const char* what) {
     error("argument-type", arguments.front().span,
           "`" + name + "` needs " + what + ", this is " + describe(arguments.front().value));

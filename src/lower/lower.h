@@ -49,6 +49,8 @@ struct LowerHost {
   std::function<int(const std::string& file, const std::string& layer, std::string& error)> texture_components;
   // The same of a stored volume's grid, see `volume()`; an empty name is the file's main grid.
   std::function<int(const std::string& file, const std::string& grid, std::string& error)> volume_components;
+  // The width and height of a stored texture; 0 and a message where there is none.
+  std::function<std::pair<int, int>(const std::string& file, std::string& error)> texture_size;
 };
 
 struct LowerOptions {

@@ -109,6 +109,7 @@ class Lowering {
   Typed call_intrinsic(const std::string& name, std::vector<CallArgument>& arguments, const Span& span);
   Typed intrinsic_texture(std::vector<CallArgument>& arguments, const Span& span);
   Typed intrinsic_volume(std::vector<CallArgument>& arguments, const Span& span);
+  Typed intrinsic_texture_size(const std::vector<CallArgument>& arguments);
   Typed intrinsic_fold(const std::string& name, std::vector<CallArgument>& arguments, const Span& span);
 
   // intrinsics_scene.cpp: rays into the scene.

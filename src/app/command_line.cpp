@@ -68,7 +68,7 @@ Exit dispatch(Session& session) {
     session.console.print(command_help(*session.arguments.command));
     return Exit::ok;
   }
-  if (name == "render") return render_command(session);
+  if (name == "render" || name == "trace") return render_command(session);
   if (name == "bake") return bake_command(session);
   if (name == "check") return check_command(session);
   if (name == "fmt") return fmt_command(session);

@@ -87,10 +87,22 @@ std::vector<StreamName> InputImages::names() const {
   std::vector<StreamName> names;
   for (const Open& image : images_)
     for (const image::Layer& layer : image.layers)
-      names.push_back(
-          {stream_prefix(image.name) + layer.name, layer.components(), ir::Rate::sample});
+      if (!is_hidden(image, layer))
+        names.push_back(
+            {stream_prefix(image.name) + layer.name, layer.components(), ir::Rate::sample});
   for (StreamName& name : tables_.names()) names.push_back(std::move(name));
   return names;
+}
+
+bool InputImages::is_hidden(const Open& image, const image::Layer& layer) const {
+  return image.name.empty() &&
+         std::find(hidden_.begin(), hidden_.end(), layer.name) != hidden_.end();
+}
+
+std::optional<InputImages::Bare> InputImages::bare() const {
+  for (const Open& image : images_)
+    if (image.name.empty() && image.reader) return Bare{*image.reader, image.layers, image.file};
+  return std::nullopt;
 }
 
 std::optional<image::Window> InputImages::display() const {
@@ -125,6 +137,7 @@ TileSource InputImages::load(const ir::Module& module, const ImagePlane& picture
     std::vector<std::size_t> inputs;
     const image::ImageSpec& spec = image.reader->spec();
     for (const image::Layer& layer : image.layers) {
+      if (is_hidden(image, layer)) continue;
       const std::string name = stream_prefix(image.name) + layer.name;
       for (int c = 0; c < layer.components(); ++c) {
         const std::string component =

@@ -26,6 +26,16 @@ class InputImages {
   std::vector<StreamName> names() const;
   // The frame of the pictures in file coordinates; the first image's. Nothing without images.
   std::optional<image::Window> display() const;
+  // The image without a name, open for the frame.
+  struct Bare {
+    image::ImageReader& reader;
+    const std::vector<image::Layer>& layers;
+    const std::string& file;
+  };
+  std::optional<Bare> bare() const;
+  // Names of the image without a name that somebody else brings.
+  void hide(std::vector<std::string> names) { hidden_ = std::move(names); }
+
   // Where any of them has pixels, joined with the display window.
   std::optional<image::Window> data() const;
   // Files opened for this frame, with what tells one version of a file from another.
@@ -43,8 +53,11 @@ class InputImages {
     std::unique_ptr<image::ImageReader> reader;
     std::vector<image::Layer> layers;
   };
+  bool is_hidden(const Open& image, const image::Layer& layer) const;
+
   std::vector<Open> images_;
   InsertedTables tables_;
+  std::vector<std::string> hidden_;
   image::ReadOptions read_;
 };
 

@@ -263,6 +263,17 @@ std::vector<OptionSpec> bake_options() {
   };
 }
 
+// Those of render that a traced picture has a use for.
+std::vector<OptionSpec> trace_options() {
+  constexpr std::array<std::string_view, 16> kept = {
+      "output", "frames",   "threads", "res",           "clip", "camera", "fps",  "compression",
+      "tiled",  "progress", "resume",  "no-provenance", "tile", "quiet",  "help", "include"};
+  std::vector<OptionSpec> options;
+  for (const OptionSpec& option : render_options())
+    if (std::find(kept.begin(), kept.end(), option.name) != kept.end()) options.push_back(option);
+  return options;
+}
+
 const std::vector<CommandSpec>& table() {
   static const std::vector<CommandSpec> all = {
       {"render",
@@ -289,6 +300,17 @@ const std::vector<CommandSpec>& table() {
         {"pse render over.pse fg=ball.%04d.exr bg=sky.exr -f 1-3 -o out.%04d.exr", "compositing"},
         {"pse render a.pse -o - | pse render b.pse - -o b.png", "programs as filters"},
         {"pse render marble.pse --help", "the program's own knobs"}}},
+      {"trace",
+       "SCENE|SHAPE|MESH -o FILE.exr",
+       "trace surfaces into a picture that programs are run on",
+       "Writes where the surfaces of a scene, a shape or a mesh are: P, N, uv, id, Z and others as "
+       "channels of an EXR file. `pse render PROGRAM FILE.exr` then shades them, as often as "
+       "wanted, without tracing again.",
+       Offer::file,
+       trace_options(),
+       {{"pse trace bunny.obj --res 1024x1024 -o bunny.exr", "a mesh"},
+        {"pse trace scene.toml -o scene.exr", "a scene"},
+        {"pse render marble.pse bunny.exr -o bunny.png", "shade it"}}},
       {"bake",
        "PROGRAM [Name=VALUE...] -o FILE.vdb",
        "compute a volume",

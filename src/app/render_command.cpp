@@ -82,11 +82,20 @@ Exit render_command(Session& session) {
     throw usage_error("where should the picture go?",
                       fmt::format("-o {}.png", fs::path(options.program).stem().string()));
   const std::vector<KnobSetting> settings = knob_settings(session, options.knob_words);
-  ProgramFile program = read_program(options.program, session);
+  ProgramFile program;
+  if (options.trace)
+    program.file = program.sources.add("<trace>", trace_program);
+  else
+    program = read_program(options.program, session);
   InputImages images(options, session);
   images.open(choose_frames(options).front());
   std::unique_ptr<Surfaces> surfaces;
-  if (wants_surfaces(options)) surfaces = std::make_unique<Surfaces>(options, session);
+  if (wants_surfaces(options))
+    surfaces = std::make_unique<Surfaces>(options, session);
+  else
+    surfaces = Surfaces::stored(options, session, images);
+  if (!options.camera.empty() && !surfaces)
+    throw usage_error("--camera needs something to look at", "--on SHAPE or --scene FILE");
 
   // Compile: one program, or those of a scene.
   OperationCounts operations;

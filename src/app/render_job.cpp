@@ -134,6 +134,10 @@ Exit RenderJob::run_frame(int index, int frame) {
     common.chromaticities = image::chromaticities_of(options_.write.working);
   common.frames_per_second = frames_.size() > 1 ? plane_.fps : 0;
   if (options_.provenance) common.attributes = provenance(context);
+  if (surfaces_ != nullptr) {
+    surfaces_->begin_frame(plane_);
+    if (options_.trace) common.attributes.merge(surfaces_->attributes());
+  }
   const TileSource pixels = images_.load(program_->module(), plane_);
   // With the apron that antialiasing looks at.
   const TileSource coordinates =
@@ -147,7 +151,6 @@ Exit RenderJob::run_frame(int index, int frame) {
   progress_.begin_frame(index, frame);
   TileSource seen;
   if (surfaces_ != nullptr) {
-    surfaces_->begin_frame(plane_);
     seen = surface::at_pixel_centres(surfaces_->samples(program_->module(), plane_));
   }
   const auto source = [&](const TileView& tile) {
@@ -250,6 +253,7 @@ antialias::Options RenderJob::antialias() const {
   // What is procedural looks into the program alone, and surfaces have outlines.
   if (surfaces_ != nullptr && antialias.mode == antialias::Mode::procedural)
     antialias.mode = antialias::Mode::none;
+  if (surfaces_ != nullptr && surfaces_->is_stored()) antialias.mode = antialias::Mode::none;
   for (const StreamName& name : images_.names())
     if (std::ranges::find(program_->reads, name.name) != program_->reads.end())
       antialias.mode = antialias::Mode::none;

@@ -51,7 +51,7 @@ void sort_words(RenderOptions& options, Arguments& arguments) {
     }
   }
   if (options.program.empty())
-    throw usage_error("render needs a program", "pse render PROGRAM -o FILE");
+    throw usage_error("there is nothing to render", "pse render PROGRAM -o FILE");
 }
 
 // --insert and --rule.
@@ -217,8 +217,13 @@ RenderOptions render_options(const Session& session) {
     if (!options.scene.empty()) throw usage_error("the program is a scene, and --scene names another");
     options.scene = options.program;
   }
-  if (!options.camera.empty() && options.on.empty() && options.scene.empty())
-    throw usage_error("--camera needs something to look at", "--on SHAPE or --scene FILE");
+  options.trace = arguments.command != nullptr && arguments.command->name == "trace";
+  if (options.trace) {
+    if (options.scene.empty()) options.on = options.program;
+    if (options.storage && *options.storage == image::PixelType::float16)
+      throw usage_error("places need all 32 bits", "leave out --half");
+    options.antialias.mode = antialias::Mode::none;
+  }
 
   // How it is computed.
   read_antialias(arguments, options);

@@ -48,6 +48,7 @@ struct RenderOptions {
   double fps = 24;
   std::uint32_t seed = 0;
 
+  bool trace = false;  // `pse trace`: surfaces themselves are the picture
   std::string on;      // --on: one shape or mesh
   std::string camera;  // --camera
   std::string scene;   // --scene, or the program where its name ends in .toml

@@ -56,6 +56,10 @@ surface::Camera orbited(surface::Camera camera, double degrees) {
 
 bool is_scene_name(const std::string& file) { return fs::path(file).extension() == ".toml"; }
 
+const char* const trace_program =
+    "P = place\nN = normal\nZ = depth\nalpha = hit\npoint = point\nuv = uv\nid = id\n"
+    "direction = direction\npixelsize = pixelsize\nbackface = backface\n";
+
 bool wants_surfaces(const RenderOptions& options) {
   return !options.on.empty() || !options.scene.empty();
 }
@@ -77,11 +81,41 @@ Surfaces::Surfaces(const RenderOptions& options, Session& session) : console_(se
   }
   if (!scene_.has_lights) scene_.lights = {usual_light()};
   make_shapes(options.scene.empty(), session);
+  if (options.trace) {
+    // One program for all, and for the background, which has directions.
+    program_of_.assign(scene_.objects.size() + 1, 0);
+    requests_.emplace_back();
+    return;
+  }
   program_of_ = {scene_.background.empty()
                      ? -1
                      : program_index(scene_.background, {}, options, session)};
   for (const SceneObject& object : scene_.objects)
     program_of_.push_back(program_index(object.program, object.knobs, options, session));
+}
+
+std::unique_ptr<Surfaces> Surfaces::stored(const RenderOptions& options, Session& session,
+                                           InputImages& images) {
+  const auto bare = images.bare();
+  if (!bare) return nullptr;
+  const surface::SurfaceLayers layers = surface::surface_layers(bare->layers);
+  if (layers.empty()) return nullptr;
+  auto surfaces = std::make_unique<Surfaces>(Nothing{}, session);
+  surfaces->images_ = &images;
+  surfaces->layers_ = layers;
+  surfaces->stored_.lights = {usual_light()};
+  surface::read_gbuffer_attributes(bare->reader.spec().attributes, surfaces->stored_);
+  if (!options.camera.empty()) {
+    const SceneCamera camera = parse_camera(options.camera);
+    if (camera.has_eye) surfaces->stored_.eye = camera.camera.eye;
+    surfaces->identities_.emplace_back("--camera " + options.camera, "");
+  }
+  surfaces->requests_.emplace_back();
+  surfaces->program_of_ = {-1, 0};
+  std::vector<std::string> hidden;
+  for (const StreamName& name : surfaces->names()) hidden.push_back(name.name);
+  images.hide(std::move(hidden));
+  return surfaces;
 }
 
 void Surfaces::read_scene(const RenderOptions& options, Session& session) {
@@ -138,13 +172,19 @@ int Surfaces::program_index(const std::string& written, const std::vector<KnobSe
 }
 
 std::vector<StreamName> Surfaces::names() const {
+  if (is_stored()) return surface::gbuffer_names(layers_, images_->bare()->layers, stored_);
   return surface::surface_names(scene_.lights.size());
 }
 
 std::shared_ptr<const Program> Surfaces::combine(std::vector<SurfaceProgram> programs) {
   programs_ = std::move(programs);
   std::vector<std::shared_ptr<const Program>> compiled;
-  for (const SurfaceProgram& part : programs_) compiled.push_back(part.program);
+  for (const SurfaceProgram& part : programs_) {
+    compiled.push_back(part.program);
+    if (const std::string problem = needs_a_scene(part.program->module());
+        is_stored() && !problem.empty())
+      throw usage_error(problem + ": a traced picture has none", "--on SHAPE or --scene FILE");
+  }
   shader_ = std::make_shared<surface::Shader>(std::move(compiled), program_of_);
   for (const auto what : {surface::TraceCall::What::trace, surface::TraceCall::What::radiance,
                           surface::TraceCall::What::visible})
@@ -168,6 +208,10 @@ surface::Camera Surfaces::camera(const ImagePlane& plane, const surface::Scene& 
 }
 
 void Surfaces::begin_frame(const ImagePlane& plane) {
+  if (is_stored()) {
+    begin_stored_frame();
+    return shader_->begin_frame(states(plane));
+  }
   // Place the objects.
   std::vector<surface::Object> objects;
   for (std::size_t i = 0; i < shapes_.size(); ++i)
@@ -178,13 +222,17 @@ void Surfaces::begin_frame(const ImagePlane& plane) {
   const surface::Camera seen = camera(plane, *placed_);
   lens_ = std::make_unique<surface::Lens>(seen, plane.width, plane.height);
   warn_inside(seen);
+  shader_->begin_frame(states(plane), placed_, *lens_);
+}
 
-  // Ready the programs.
+std::vector<FrameState> Surfaces::states(const ImagePlane& plane) const {
   std::vector<FrameState> states;
   for (const SurfaceProgram& part : programs_) {
     const ir::Module& module = part.program->module();
     FrameState state = plane_state(module, plane, part.knobs);
-    surface::set_scene_uniforms(module, *placed_, *lens_, state);
+    surface::set_scene_uniforms(module, is_stored() ? stored_.lights : scene_.lights,
+                                is_stored() ? stored_.eye.value_or(surface::Vec3{}) : lens_->eye(),
+                                state);
     state.externals = part.textures->functions();
     for (std::size_t i = 0; i < module.externals.size(); ++i)
       if (const auto what = surface::TraceCall::of(module.externals[i].name))
@@ -192,7 +240,23 @@ void Surfaces::begin_frame(const ImagePlane& plane) {
                               calls_[static_cast<std::size_t>(*what)].get()};
     states.push_back(std::move(state));
   }
-  shader_->begin_frame(std::move(states), placed_, *lens_);
+  return states;
+}
+
+// Reads what the program wants, and what that follows from.
+void Surfaces::begin_stored_frame() {
+  const auto bare = images_->bare();
+  surface::read_gbuffer_attributes(bare->reader.spec().attributes, stored_);
+  const std::vector<std::string> layers = surface::layers_wanted(
+      surface::Shader::combined(shader_)->module(), layers_);
+  std::vector<std::string> channels;
+  for (const std::string& name : layers)
+    for (const int channel : image::find_layer(bare->layers, name)->channels)
+      channels.push_back(
+          bare->reader.spec().channels[static_cast<std::size_t>(channel)].name);
+  auto picture = image::read_image(bare->reader, {}, channels);
+  if (!picture) throw Failure(Exit::input, picture.error().message);
+  picture_ = std::make_shared<const image::Image>(std::move(*picture));
 }
 
 void Surfaces::warn_inside(const surface::Camera& camera) {
@@ -205,9 +269,20 @@ void Surfaces::warn_inside(const surface::Camera& camera) {
 
 std::unique_ptr<SampleSource> Surfaces::samples(const ir::Module& module,
                                                 const ImagePlane& plane) const {
-  return std::make_unique<Both>(
-      image_plane_samples(module, plane),
-      std::make_unique<surface::SurfaceSource>(module, placed_, *lens_));
+  std::unique_ptr<SampleSource> surfaces;
+  if (is_stored()) {
+    const auto bare = images_->bare();
+    surfaces = std::make_unique<surface::GBuffer>(module, layers_, bare->layers,
+                                                  bare->reader.spec(), picture_, stored_);
+  } else {
+    surfaces = std::make_unique<surface::SurfaceSource>(module, placed_, *lens_);
+  }
+  return std::make_unique<Both>(image_plane_samples(module, plane), std::move(surfaces));
+}
+
+std::map<std::string, std::string> Surfaces::attributes() const {
+  if (is_stored()) return surface::gbuffer_attributes(stored_);
+  return surface::gbuffer_attributes({lens_->eye(), scene_.lights});
 }
 
 std::vector<std::pair<std::string, std::string>> Surfaces::identities() const {

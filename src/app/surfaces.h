@@ -4,10 +4,12 @@
 
 #include <optional>
 
+#include "app/input_images.h"
 #include "app/knobs.h"
 #include "app/render_options.h"
 #include "app/scene_file.h"
 #include "app/textures.h"
+#include "surface/gbuffer.h"
 #include "surface/shader.h"
 #include "surface/trace_call.h"
 
@@ -29,6 +31,10 @@ class Surfaces {
  public:
   // Reads the scene and its meshes. Throws Failure (usage, input).
   Surfaces(const RenderOptions& options, Session& session);
+  // Takes the surfaces of the images' bare picture (surface/gbuffer.h), if it has such; the images
+  // then no longer bring these names. They must outlive this.
+  static std::unique_ptr<Surfaces> stored(const RenderOptions& options, Session& session,
+                                          InputImages& images);
 
   // The programs to compile, in the order in which combine() takes them.
   const std::vector<ProgramRequest>& programs() const { return requests_; }
@@ -41,10 +47,16 @@ class Surfaces {
   void begin_frame(const ImagePlane& plane);
   // The plane's names and the surfaces', at any places of the frame that was begun.
   std::unique_ptr<SampleSource> samples(const ir::Module& module, const ImagePlane& plane) const;
+  // What a picture of these surfaces should say of them in its head.
+  std::map<std::string, std::string> attributes() const;
+  bool is_stored() const { return images_ != nullptr; }
   // Files read, with their identities.
   std::vector<std::pair<std::string, std::string>> identities() const;
   // The file whose text is the picture's recipe where there is no program: the scene's.
   const std::string& path() const { return scene_.path; }
+
+  struct Nothing {};
+  Surfaces(Nothing, Session& session) : console_(session.console) {}
 
  private:
   void read_scene(const RenderOptions& options, Session& session);
@@ -53,6 +65,8 @@ class Surfaces {
                     const RenderOptions& options, const Session& session);
   surface::Camera camera(const ImagePlane& plane, const surface::Scene& scene) const;
   void warn_inside(const surface::Camera& camera);
+  void begin_stored_frame();
+  std::vector<FrameState> states(const ImagePlane& plane) const;
 
   Console& console_;
   SceneFile scene_;
@@ -66,7 +80,16 @@ class Surfaces {
   std::unique_ptr<surface::Lens> lens_;
   std::vector<std::pair<std::string, std::string>> identities_;
   bool warned_ = false;
+
+  // Of stored surfaces.
+  InputImages* images_ = nullptr;
+  surface::SurfaceLayers layers_;
+  surface::GBufferFrame stored_;
+  std::shared_ptr<const image::Image> picture_;
 };
+
+// The program that `pse trace` runs: it sets what G-buffers hold.
+extern const char* const trace_program;
 
 // Whether these arguments ask for surfaces at all.
 bool wants_surfaces(const RenderOptions& options);

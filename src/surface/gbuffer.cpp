@@ -136,6 +136,30 @@ std::vector<StreamName> gbuffer_names(const SurfaceLayers& layers,
   return names;
 }
 
+std::vector<std::string> layers_wanted(const ir::Module& module, const SurfaceLayers& layers) {
+  std::vector<std::string> wanted;
+  const auto want = [&](const std::string& name) {
+    const auto found = layers.find(name);
+    if (found == layers.end()) return false;
+    if (std::find(wanted.begin(), wanted.end(), found->second) == wanted.end())
+      wanted.push_back(found->second);
+    return true;
+  };
+  // Which pixels show anything.
+  if (!want("hit") && !want("id") && !want("depth")) want("normal");
+  for (const ir::Input& input : module.inputs) {
+    if (input.rate != ir::Rate::sample) continue;
+    const std::string base = input.name.substr(0, input.name.find('.'));
+    if (base == "u" || base == "v") want("uv");
+    if (want(base)) continue;
+    if (base == "view") (void)(want("direction") || want("place"));
+    if (base == "direction" || base == "depth") want("place");
+    if (base == "pixelsize" || base == "pixel_freq") (void)(want("pixelsize") || want("point"));
+    if (base.starts_with("light")) want("place");
+  }
+  return wanted;
+}
+
 GBuffer::GBuffer(const ir::Module& module, const SurfaceLayers& layers,
                  std::span<const image::Layer> all, const image::ImageSpec& spec,
                  std::shared_ptr<const image::Image> picture, const GBufferFrame& frame)

@@ -32,6 +32,9 @@ std::vector<StreamName> gbuffer_names(const SurfaceLayers& layers,
                                       std::span<const image::Layer> all,
                                       const GBufferFrame& frame);
 
+// The layers that the values of a module's inputs come from.
+std::vector<std::string> layers_wanted(const ir::Module& module, const SurfaceLayers& layers);
+
 // A source of samples at pixel centres.
 class GBuffer : public SampleSource {
  public:

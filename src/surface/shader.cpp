@@ -103,10 +103,14 @@ std::shared_ptr<const Program> Shader::combined(std::shared_ptr<Shader> shader) 
 
 void Shader::begin_frame(std::vector<FrameState> states, std::shared_ptr<const Scene> scene,
                          const Lens& lens) {
-  states_ = std::move(states);
+  begin_frame(std::move(states));
   scene_ = std::move(scene);
   lens_ = std::make_unique<Lens>(lens);
   names_ = std::make_unique<NameWriter>(split_->module, scene_, lens);
+}
+
+void Shader::begin_frame(std::vector<FrameState> states) {
+  states_ = std::move(states);
   ready_ = false;
 }
 
@@ -128,8 +132,8 @@ void Shader::run_samples(const FrameState&, RunStatus& status, Scratch&,
   std::vector<std::vector<std::uint32_t>> which(parts_.size());
   for (std::int64_t i = 0; i < count; ++i) {
     const float id = ids[i];
-    const bool known = id >= 0 && id < static_cast<float>(program_of_.size());
-    const int part = known ? program_of_[static_cast<std::size_t>(id)] : -1;
+    const auto last = static_cast<float>(program_of_.size() - 1);
+    const int part = id >= 0 ? program_of_[static_cast<std::size_t>(std::min(id, last))] : -1;
     if (part >= 0) which[static_cast<std::size_t>(part)].push_back(static_cast<std::uint32_t>(i));
   }
   for (std::size_t o = 0; o < split_->module.outputs.size(); ++o)

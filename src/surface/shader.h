@@ -13,14 +13,16 @@ namespace pse::surface {
 class Shader : public Kernel {
  public:
   // program_of[id] is an index of `programs` for what has that id, id 0 being the background, or
-  // -1 for nothing.
+  // -1 for nothing. The last is for all greater ids too.
   Shader(std::vector<std::shared_ptr<const Program>> programs, std::vector<int> program_of);
 
   // The programs as one: it reads what any of them reads at sample rate, and `id`, and sets what
   // any of them sets, and `alpha`: 1 where a program ran that does not set it.
   static std::shared_ptr<const Program> combined(std::shared_ptr<Shader> shader);
 
-  // What holds for a frame: one state per program, filled but not run; the scene for trace().
+  // What holds for a frame: one state per program, filled but not run.
+  void begin_frame(std::vector<FrameState> states);
+  // The same with a scene, for trace().
   void begin_frame(std::vector<FrameState> states, std::shared_ptr<const Scene> scene,
                    const Lens& lens);
   const Scene* scene() const { return scene_.get(); }

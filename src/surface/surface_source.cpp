@@ -155,16 +155,16 @@ void NameWriter::write(std::span<const Sighting> sightings, std::span<float* con
   }
 }
 
-void set_scene_uniforms(const ir::Module& module, const Scene& scene, const Lens& lens,
+void set_scene_uniforms(const ir::Module& module, std::span<const Light> lights, const Vec3& eye,
                         FrameState& state) {
   state.uniforms.resize(module.inputs.size());
   for (std::size_t i = 0; i < module.inputs.size(); ++i) {
     const ir::Input& input = module.inputs[i];
     if (input.rate == ir::Rate::sample) continue;
     if (input.name == "light_count")
-      state.uniforms[i] = static_cast<float>(scene.lights().size());
+      state.uniforms[i] = static_cast<float>(lights.size());
     if (input.name.starts_with("eye.") && input.name.size() == 5)
-      state.uniforms[i] = static_cast<float>(lens.eye()[input.name[4] - '0']);
+      state.uniforms[i] = static_cast<float>(eye[input.name[4] - '0']);
   }
 }
 

@@ -54,7 +54,7 @@ class NameWriter {
 };
 
 // Sets the frame-rate inputs that a scene brings: eye, light_count.
-void set_scene_uniforms(const ir::Module& module, const Scene& scene, const Lens& lens,
+void set_scene_uniforms(const ir::Module& module, std::span<const Light> lights, const Vec3& eye,
                         FrameState& state);
 
 class SurfaceSource : public SampleSource {

@@ -53,5 +53,18 @@ TEST_F(Lamps, TheSkyIsHalfOpenBesideAWall) {
   EXPECT_EQ(seen("open_sky(place, normal, 1, 64)", roof_), 1.0f);
 }
 
+TEST_F(Lamps, WhatIsOfTheObjectTurnsWithIt) {
+  // A ball turned by 90 degrees about z: its own x axis points up, its y axis to the left.
+  file("ball.pse", "color = in_world([1 0.5 0])\n");
+  file("scene.toml", "[camera]\neye = [0, 0, 5]\n[[object]]\nshape = \"sphere\"\nturn = [0, 0, 90]\n");
+  const Ended ended = pse({"render", "ball.pse", "--scene", "scene.toml", "-o", "a.exr", "--res",
+                           "9x9", "--float"});
+  ASSERT_EQ(ended.status, 0) << ended.err;
+  const image::Image image = picture("a.exr");
+  const float want[] = {-0.5f, 1, 0};
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(image.at(image.spec.find(std::string(1, "RGB"[c])), 4, 4), want[c], 1e-6) << c;
+}
+
 }  // namespace
 }  // namespace pse::test

@@ -80,7 +80,7 @@ Surfaces::Surfaces(const RenderOptions& options, Session& session) : console_(se
     identities_.emplace_back("--camera " + options.camera, "");
   }
   if (!scene_.has_lights) scene_.lights = {usual_light()};
-  make_shapes(options.scene.empty(), session);
+  make_shapes(options, session);
   if (options.trace) {
     // One program for all, and for the background, which has directions.
     program_of_.assign(scene_.objects.size() + 1, 0);
@@ -124,14 +124,20 @@ void Surfaces::read_scene(const RenderOptions& options, Session& session) {
   identities_.emplace_back(path, file_identity(path));
 }
 
-void Surfaces::make_shapes(bool fit_meshes, Session& session) {
+void Surfaces::make_shapes(const RenderOptions& options, Session& session) {
   for (SceneObject& object : scene_.objects) {
     if (!surface::is_shape_name(object.shape.shape)) {
       const std::string found = find_beside(scene_.path, object.shape.shape, session);
       object.shape.shape = found;
       identities_.emplace_back(found, file_identity(found));
     }
-    const auto made = surface::make_shape(object.shape, fit_meshes);
+    const auto made = [&] {
+      if (!surface::is_field_name(object.shape.shape))
+        return surface::make_shape(object.shape, options.scene.empty());
+      functions_.push_back(
+          std::make_unique<SpaceFunction>(object.shape.shape, options, session));
+      return surface::make_field_shape(object.shape, functions_.back()->field());
+    }();
     if (!made) {
       const surface::ShapeError& error = made.error();
       if (scene_.path.empty())
@@ -212,6 +218,7 @@ void Surfaces::begin_frame(const ImagePlane& plane) {
     begin_stored_frame();
     return shader_->begin_frame(states(plane));
   }
+  for (const auto& function : functions_) function->begin_frame(plane);
   // Place the objects.
   std::vector<surface::Object> objects;
   for (std::size_t i = 0; i < shapes_.size(); ++i)

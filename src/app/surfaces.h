@@ -8,6 +8,7 @@
 #include "app/knobs.h"
 #include "app/render_options.h"
 #include "app/scene_file.h"
+#include "app/space_function.h"
 #include "app/textures.h"
 #include "surface/gbuffer.h"
 #include "surface/shader.h"
@@ -60,7 +61,7 @@ class Surfaces {
 
  private:
   void read_scene(const RenderOptions& options, Session& session);
-  void make_shapes(bool fit_meshes, Session& session);
+  void make_shapes(const RenderOptions& options, Session& session);
   int program_index(const std::string& written, const std::vector<KnobSetting>& knobs,
                     const RenderOptions& options, const Session& session);
   surface::Camera camera(const ImagePlane& plane, const surface::Scene& scene) const;
@@ -70,6 +71,7 @@ class Surfaces {
 
   Console& console_;
   SceneFile scene_;
+  std::vector<std::unique_ptr<SpaceFunction>> functions_;      // of isosurfaces
   std::vector<std::shared_ptr<const surface::Shape>> shapes_;  // of the objects
   std::vector<int> program_of_;                                // of the background, the objects
   std::vector<ProgramRequest> requests_;

@@ -74,6 +74,12 @@ const Kind* find_kind(const std::string& name) {
 
 bool is_mesh_name(const std::string& name) { return name.find('.') != std::string::npos; }
 
+const Kind& field_kind() {
+  static const Kind kind = {
+      "an isosurface", {{"level", {0.5}, -inf}, {"bounds", {1.5, 1.5, 1.5}, tiny}, {"step", {0}, 0}}, {}};
+  return kind;
+}
+
 ShapeError unknown_setting(const Setting& setting, const std::string& shape,
                            const std::vector<std::string>& known) {
   std::string list;
@@ -84,6 +90,38 @@ ShapeError unknown_setting(const Setting& setting, const std::string& shape,
           : list.empty()  ? "it has none"
                           : "it has " + list,
           setting.line, true};
+}
+
+// The settings with what is usual in place of those that are not given.
+std::expected<Values, ShapeError> values_of(const Kind& kind, const ShapeSpec& spec) {
+  Values values;
+  std::vector<std::string> known;
+  for (const Parameter& parameter : kind.parameters)
+    values[parameter.name] = parameter.usual, known.emplace_back(parameter.name);
+  for (const Setting& setting : spec.settings) {
+    const Parameter* parameter = nullptr;
+    for (const Parameter& candidate : kind.parameters)
+      if (setting.key == candidate.name) parameter = &candidate;
+    if (parameter == nullptr)
+      return std::unexpected(unknown_setting(setting, kind.name, known));
+    const std::size_t given = setting.numbers.size(), usual = parameter->usual.size();
+    const bool fits = parameter->any_length ? given >= 4 && given % 2 == 0
+                                            : given == usual || (given == 1 && usual == 3);
+    if (!fits)
+      return std::unexpected(
+          ShapeError{"`" + setting.key + "` of " + kind.name +
+                         (parameter->any_length
+                              ? " takes pairs of radius and height, two or more"
+                              : " takes " + std::to_string(usual) +
+                                    (usual == 1 ? " number" : " numbers")),
+                     "", setting.line, true});
+    for (const double number : setting.numbers)
+      if (!(number >= parameter->least) || std::isnan(number))
+        return std::unexpected(ShapeError{"`" + setting.key + "` of " + kind.name + " is too small",
+                                          "", setting.line, true});
+    values[setting.key] = setting.numbers;
+  }
+  return values;
 }
 
 std::expected<MadeShape, ShapeError> make_mesh(const ShapeSpec& spec, bool fit) {
@@ -163,6 +201,18 @@ std::vector<std::pair<std::string, std::string>> shape_names() {
 
 bool is_shape_name(const std::string& name) { return find_kind(name) != nullptr; }
 
+bool is_field_name(const std::string& name) { return name.ends_with(".pse"); }
+
+std::expected<MadeShape, ShapeError> make_field_shape(const ShapeSpec& spec, Field field) {
+  const auto values = values_of(field_kind(), spec);
+  if (!values) return std::unexpected(values.error());
+  const Vec3 half = three(*values, "bounds");
+  const double step = one(*values, "step");
+  return MadeShape{make_isosurface(std::move(field), one(*values, "level"), {-half, half},
+                                   step > 0 ? step : length(half) / 100),
+                   {}};
+}
+
 std::expected<MadeShape, ShapeError> make_shape(const ShapeSpec& spec, bool fit_meshes) {
   const Kind* kind = find_kind(spec.shape);
   if (kind == nullptr) {
@@ -177,34 +227,9 @@ std::expected<MadeShape, ShapeError> make_shape(const ShapeSpec& spec, bool fit_
                                                    : "did you mean `" + near + "`?",
                                       spec.line, true});
   }
-  Values values;
-  std::vector<std::string> known;
-  for (const Parameter& parameter : kind->parameters)
-    values[parameter.name] = parameter.usual, known.emplace_back(parameter.name);
-  for (const Setting& setting : spec.settings) {
-    const Parameter* parameter = nullptr;
-    for (const Parameter& candidate : kind->parameters)
-      if (setting.key == candidate.name) parameter = &candidate;
-    if (parameter == nullptr)
-      return std::unexpected(unknown_setting(setting, kind->name, known));
-    const std::size_t given = setting.numbers.size(), usual = parameter->usual.size();
-    const bool fits = parameter->any_length ? given >= 4 && given % 2 == 0
-                                            : given == usual || (given == 1 && usual == 3);
-    if (!fits)
-      return std::unexpected(
-          ShapeError{"`" + setting.key + "` of " + kind->name +
-                         (parameter->any_length
-                              ? " takes pairs of radius and height, two or more"
-                              : " takes " + std::to_string(usual) +
-                                    (usual == 1 ? " number" : " numbers")),
-                     "", setting.line, true});
-    for (const double number : setting.numbers)
-      if (!(number >= parameter->least) || std::isnan(number))
-        return std::unexpected(ShapeError{"`" + setting.key + "` of " + kind->name + " is too small",
-                                          "", setting.line, true});
-    values[setting.key] = setting.numbers;
-  }
-  return MadeShape{kind->make(values), {}};
+  const auto values = values_of(*kind, spec);
+  if (!values) return std::unexpected(values.error());
+  return MadeShape{kind->make(*values), {}};
 }
 
 }  // namespace pse::surface

@@ -39,6 +39,10 @@ std::expected<ShapeSpec, ShapeError> parse_shape(const std::string& words);
 std::vector<std::pair<std::string, std::string>> shape_names();
 bool is_shape_name(const std::string& name);
 
+// Whether the words name a program, whose isosurface is meant: `blob.pse level=0.5`.
+bool is_field_name(const std::string& name);
+std::expected<MadeShape, ShapeError> make_field_shape(const ShapeSpec& spec, Field field);
+
 // `fit_meshes`: a mesh is centred and scaled to 2 metres unless told otherwise.
 std::expected<MadeShape, ShapeError> make_shape(const ShapeSpec& spec, bool fit_meshes);
 

@@ -151,5 +151,42 @@ TEST(Shapes, CoordinatesStayInTheUnitSquare) {
     }
 }
 
+// An isosurface whose function is that of a torus is the torus.
+TEST(Shapes, AnIsosurfaceIsTheShapeOfItsFunction) {
+  const Field field = [](std::int64_t count, const float* x, const float* y, const float* z,
+                         float* values) {
+    for (std::int64_t i = 0; i < count; ++i)
+      values[i] = 0.8f - std::hypot(std::hypot(x[i], z[i]) - 0.7f, y[i]);
+  };
+  const auto iso = make_isosurface(field, 0.5, {{-1.1, -1.1, -1.1}, {1.1, 1.1, 1.1}}, 0.02);
+  const auto torus = make_torus(0.7, 0.3);
+  const std::vector<Ray> rays = rays_inward(3000, 3);
+  std::vector<ShapeHit> hits(rays.size());
+  iso->intersect(rays, hits);
+  int both = 0, one = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const ShapeHit exact = first_hit(*torus, rays[i]);
+    if (exact.found() != hits[i].found()) {
+      ++one;  // where the ray only touches it
+      continue;
+    }
+    if (!exact.found()) continue;
+    ++both;
+    if (std::abs(exact.t - hits[i].t) > 0.01) {
+      ++one;
+      continue;
+    }
+    const double facing = -dot(normalized(exact.normal), rays[i].direction);
+    EXPECT_NEAR(hits[i].t, exact.t, 1e-6 / std::max(facing, 0.05));
+    EXPECT_GT(dot(normalized(hits[i].normal), normalized(exact.normal)), 0.9999);
+    // A hit depends on its ray alone.
+    if (i % 100 == 0) {
+      EXPECT_EQ(first_hit(*iso, rays[i]).t, hits[i].t);
+    }
+  }
+  EXPECT_GT(both, 1000);
+  EXPECT_LT(one, both / 50);
+}
+
 }  // namespace
 }  // namespace pse::surface

@@ -75,11 +75,25 @@ class Slice {
   bool changed_ = false;
 };
 
+// Which values depend on the pixel's own number, px and py, and so have no value between pixels:
+// those that would still differ from sample to sample if nothing but px and py did.
+std::vector<bool> made_of_pixels(ir::Module module) {
+  for (ir::Input& input : module.inputs)
+    input.rate = input.name == "px" || input.name == "py" ? ir::Rate::sample : ir::Rate::frame;
+  passes::assign_rates(module);
+  std::vector<bool> found;
+  for (const ir::ValueInfo& value : module.main().values)
+    found.push_back(value.rate == ir::Rate::sample);
+  return found;
+}
+
+// All instructions but those inside of dither.
 template <class Visit>
-void for_each(const Region& region, const Visit& visit) {
+void for_each(const Region& region, const Decisions& found, const Visit& visit) {
   for (const Instruction& in : region.body) {
     visit(in);
-    for (const Region& inner : in.regions) for_each(inner, visit);
+    if (found.is_dither(in)) continue;
+    for (const Region& inner : in.regions) for_each(inner, found, visit);
   }
 }
 
@@ -113,17 +127,20 @@ Decisions find_decisions(ir::Module& module) {
   found.jumps.resize(main.values.size());
   found.kinks.resize(main.values.size());
   Slice bends(main);
+  // Dither is no edge: what decides by px and py decides anew in each pixel, and a ray marcher with
+  // a jittered step does so all along its way.
+  found.dithered = made_of_pixels(module);
   const auto differs = [&](const Instruction& in) {
-    return main.values[in.result()].rate == ir::Rate::sample;
+    return main.values[in.result()].rate == ir::Rate::sample && !found.dithered[in.result()];
   };
-  for_each(main.body, [&](const Instruction& in) {
+  for_each(main.body, found, [&](const Instruction& in) {
     const Cut cut = cut_of(in.op);
     if (cut == Cut::none || cut == Cut::kink || !differs(in)) return;
     found.jumps[in.result()] = found.any = true;
     for (const Value operand : in.operands) bends.need(operand);
   });
   bends.run();
-  for_each(main.body, [&](const Instruction& in) {
+  for_each(main.body, found, [&](const Instruction& in) {
     if (cut_of(in.op) == Cut::kink && differs(in) && bends[in.result()])
       found.kinks[in.result()] = true;
   });

@@ -22,9 +22,17 @@ Cut cut_of(ir::Op op);
 
 // The cuts of the main function that differ from sample to sample, by the value that they give.
 struct Decisions {
-  std::vector<bool> jumps;  // all but kinks
-  std::vector<bool> kinks;  // those that some jump depends on: they bend an edge
-  bool any = false;         // whether there is a jump
+  std::vector<bool> jumps;     // all but kinks
+  std::vector<bool> kinks;     // those that some jump depends on: they bend an edge
+  std::vector<bool> dithered;  // what depends on px and py: none of these is an edge
+  bool any = false;            // whether there is a jump
+
+  // Whether an if or a loop goes its way by px and py, and with it all that stands inside.
+  bool is_dither(const ir::Instruction& in) const {
+    if (in.op != ir::Op::if_ && in.op != ir::Op::loop) return false;
+    const ir::Value by = in.op == ir::Op::if_ ? in.operands[0] : in.regions[0].yields[0];
+    return by < dithered.size() && dithered[by];
+  }
 };
 
 // Gives the module's values their rates, and finds the decisions.

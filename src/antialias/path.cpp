@@ -60,6 +60,7 @@ class Paths {
   }
 
   Value branch(Instruction& in, Value path) {
+    if (decisions_.is_dither(in)) return path;
     const Value yes = walk(in.regions[0], path), no = walk(in.regions[1], path);
     if (yes == path && no == path) return path;
     in.regions[0].yields.push_back(yes);
@@ -69,6 +70,7 @@ class Paths {
   }
 
   Value turn(Instruction& in, Value path) {
+    if (decisions_.is_dither(in)) return path;
     Region &head = in.regions[0], &body = in.regions[1];
     head.params.push_back(function_.add_value(ir::Type::i32));
     body.params.push_back(function_.add_value(ir::Type::i32));

@@ -74,6 +74,24 @@ TEST_F(Render, ThreadsTilesAndWidthsDoNotChangeAPixel) {
   }
 }
 
+TEST_F(Render, DitherIsNoEdge) {
+  // What decides by px and py alone, and a march whose steps are jittered by them, stays as it is;
+  // an edge beside them is still found.
+  file("dither.pse",
+       "Edge = 0\njitter = fract(52.98 * fract(0.067 * px + 0.0058 * py))\nt = jitter * 0.1\n"
+       "while t < 1 and norm([x y t]) > 0.5\n    t += 0.1\n"
+       "color = t * white\nif Edge > 0\n    color *= x > 0.3 * y ? 1 : 0\n");
+  const auto refined = [&](const std::string& edge) {
+    const Ended ended = pse({"render", "dither.pse", "-o", "a.exr", "--res", "64x64", "--antialias",
+                             "procedural", "--stats=json", "-q", edge});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return nlohmann::json::parse(ended.out)["antialias"]["filtered"].get<int>();
+  };
+  EXPECT_EQ(refined("Edge=0"), 0);
+  EXPECT_GT(refined("Edge=1"), 60);
+  EXPECT_LT(refined("Edge=1"), 64 * 64 / 4);
+}
+
 TEST_F(Render, ImagesComeInAsNamesAndChainThroughPipes) {
   make_input("in.exr");
   file("a.pse", "color = 2 * color\n");

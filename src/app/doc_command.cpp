@@ -48,6 +48,9 @@ const std::vector<Entry>& variables() {
        "the highest frequency that pixels can show, in cycles per unit: 0.5 / pixelsize",
        "variable"},
       {"seed", "seed", "the number given with --seed", "variable"},
+      {"prepass", "prepass.near, prepass.far, prepass.step",
+       "where a prepass found matter on the pixel's ray, and what step it looks with; for the marchers",
+       "variable"},
       {"begin_frame", "if begin_frame ...",
        "true where a frame begins: the block is computed once per frame", "variable"}};
   return all;

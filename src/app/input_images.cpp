@@ -52,7 +52,8 @@ InputImages::InputImages(const RenderOptions& options, const Session& session)
     : tables_(options, session) {
   read_.working = options.write.working;
   for (const ImageRequest& image : options.images)
-    images_.push_back({image.name, session.find_file(image.file), {}, nullptr, {}});
+    images_.push_back(
+        {image.name, session.find_file(image.file), {}, nullptr, {}, image.derived});
 }
 
 bool InputImages::vary() const {
@@ -119,7 +120,7 @@ std::optional<image::Window> InputImages::data() const {
 std::vector<std::pair<std::string, std::string>> InputImages::identities() const {
   std::vector<std::pair<std::string, std::string>> all;
   for (const Open& image : images_)
-    all.emplace_back(image.name + "=" + image.file, file_identity(image.file));
+    if (!image.derived) all.emplace_back(image.name + "=" + image.file, file_identity(image.file));
   for (auto& table : tables_.identities()) all.push_back(std::move(table));
   return all;
 }

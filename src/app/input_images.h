@@ -52,6 +52,7 @@ class InputImages {
     std::string file;     // of this frame
     std::unique_ptr<image::ImageReader> reader;
     std::vector<image::Layer> layers;
+    bool derived = false;
   };
   bool is_hidden(const Open& image, const image::Layer& layer) const;
 

@@ -6,8 +6,10 @@
 
 #include "app/compile_settings.h"
 #include "app/emit.h"
+#include "app/function_program.h"
 #include "app/help.h"
 #include "app/knobs.h"
+#include "app/prepass_stage.h"
 #include "app/program_file.h"
 #include "app/render_job.h"
 #include "app/report.h"
@@ -67,6 +69,19 @@ std::vector<KnobSetting> known(std::vector<KnobSetting> settings, const std::vec
   return settings;
 }
 
+// Makes the density the picture, for --slice.
+void show_density(ProgramFile& program) {
+  Diagnostics ignored;
+  const lang::Program tree = lang::parse(program.sources, program.file, ignored);
+  if (ignored.has_errors()) return;  // the compiler reports them
+  const bool sets = sets_at_top(tree, "density");
+  if (!sets && required_parameters(tree, "density") != 1)
+    throw usage_error("--slice shows the density, and the program has none",
+                      "function density(p)");
+  append_lines(program, (sets ? "" : calls_at_point(tree, {"density"})) +
+                            "color = [density density density]\nalpha = 1\n");
+}
+
 }  // namespace
 
 Exit render_command(Session& session) {
@@ -75,7 +90,7 @@ Exit render_command(Session& session) {
   Signals signals;
 
   // Read the arguments, the program and the heads of the images.
-  const RenderOptions options = render_options(session);
+  RenderOptions options = render_options(session);
   const std::string stage = session.arguments.text_or("emit", "");
   const std::string stats = session.arguments.text_or("stats", "");
   if (options.outputs.empty() && stage.empty() && stats.empty())
@@ -87,6 +102,12 @@ Exit render_command(Session& session) {
     program.file = program.sources.add("<trace>", trace_program);
   else
     program = read_program(options.program, session);
+  if (options.slice) show_density(program);
+  PrepassStage prepass;
+  if (options.prepass > 0)
+    if (const Exit stopped = prepass.run(session, options, program, settings, signals);
+        stopped != Exit::ok)
+      return stopped;
   InputImages images(options, session);
   images.open(choose_frames(options).front());
   std::unique_ptr<Surfaces> surfaces;

@@ -179,6 +179,38 @@ void read_antialias(const Arguments& arguments, RenderOptions& options) {
   }
 }
 
+// "z=0.25": the axis and the place on it.
+std::pair<int, double> parse_slice(const OptionValue& value) {
+  const std::string axes = "xyz";
+  const std::size_t equals = value.text.find('=');
+  double place = 0;
+  const bool good = equals == 1 && axes.find(value.text[0]) != std::string::npos &&
+                    read_number(value.text.substr(2), place);
+  if (!good)
+    throw usage_error(fmt::format("{} takes an axis and a place, not `{}`", value.origin, value.text),
+                      "--slice z=0");
+  return {static_cast<int>(axes.find(value.text[0])), place};
+}
+
+// The picture's plane laid into space: seen from the positive side of the axis, with y up where that
+// can be.
+PlaneTransform slice_transform(const std::pair<int, double>& slice,
+                               const std::optional<PlaneTransform>& before) {
+  const double at = slice.second;
+  const PlaneTransform lay = slice.first == 0   ? PlaneTransform{0, 0, 1, at, 0,  1, 0, 0,
+                                                                 -1, 0, 0, 0,  0,  0, 0, 1}
+                             : slice.first == 1 ? PlaneTransform{1, 0,  0, 0, 0, 0, 1, at,
+                                                                 0, -1, 0, 0, 0, 0, 0, 1}
+                                                : PlaneTransform{1, 0, 0, 0, 0, 1, 0, 0,
+                                                                 0, 0, 1, at, 0, 0, 0, 1};
+  if (!before) return lay;
+  PlaneTransform both{};
+  for (std::size_t r = 0; r < 4; ++r)
+    for (std::size_t c = 0; c < 4; ++c)
+      for (std::size_t k = 0; k < 4; ++k) both[4 * r + c] += lay[4 * r + k] * (*before)[4 * k + c];
+  return both;
+}
+
 }  // namespace
 
 RenderOptions render_options(const Session& session) {
@@ -199,6 +231,13 @@ RenderOptions render_options(const Session& session) {
           fmt::format("{} takes 6, 9 or 16 numbers, not `{}`", value->origin, value->text),
           "2, 0, 0.5, 0, 2, 0 scales by 2 and moves x by 0.5");
   }
+  if (const auto value = arguments.value("slice")) {
+    options.slice = parse_slice(*value);
+    options.transform = slice_transform(*options.slice, options.transform);
+  }
+  if (const auto value = arguments.value("prepass")) options.prepass = parse_integer(*value, 1, 64);
+  options.prepass_image = arguments.text_or("prepass-image", "");
+  options.count_evaluations = arguments.has("stats");
   if (const auto value = arguments.value("frames")) {
     const auto frames = image::parse_frames(value->text);
     if (!frames)

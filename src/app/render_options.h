@@ -19,6 +19,7 @@ namespace pse::app {
 struct ImageRequest {
   std::string name;  // empty: its channels are bare names
   std::string file;  // may be a pattern
+  bool derived = false;  // made by this run from what it already has: no input of the user's
 };
 
 // `--rule stars.z=nearest`, or `--rule stars=max` for all of its columns.
@@ -55,6 +56,12 @@ struct RenderOptions {
 
   antialias::Options antialias;
   std::string antialias_text = "procedural", filter_text = "cubic";  // as given, for the recipe
+
+  int prepass = 0;                 // of how many pixels and steps one is looked at first; 0: none
+  std::string prepass_image;       // where what was found is kept; empty: nowhere
+  bool count_evaluations = false;  // --stats
+  std::optional<std::pair<int, double>> slice;  // axis and place of a z-slice
+
   int threads = 0, tile = 0, width = 0;
   bool interpret = false, optimize = true, cache = true;
 

@@ -9,10 +9,14 @@
 namespace pse {
 namespace {
 
-enum class Coordinate { x, y, u, v, px, py, point_x, point_y, point_z };
+enum class Coordinate { x, y, u, v, px, py, point_x, point_y, point_z, span_near, span_far };
 
-constexpr std::array<std::string_view, 9> coordinate_names = {
-    "x", "y", "u", "v", "px", "py", "point.0", "point.1", "point.2"};
+constexpr std::array<std::string_view, 11> coordinate_names = {
+    "x",       "y",       "u",       "v",            "px",         "py",
+    "point.0", "point.1", "point.2", "prepass.near", "prepass.far"};
+
+// Where no prepass has looked, matter may be anywhere along a ray.
+constexpr double anywhere_on_ray = 1e30;
 
 struct PlaneInput {
   std::size_t input;  // index in Module::inputs
@@ -59,6 +63,10 @@ double coordinate_at(const ImagePlane& plane, Coordinate which, double px, doubl
       return px;
     case Coordinate::py:
       return py;
+    case Coordinate::span_near:
+      return -anywhere_on_ray;
+    case Coordinate::span_far:
+      return anywhere_on_ray;
     default:
       break;
   }
@@ -116,7 +124,8 @@ void fill_everywhere(const ImagePlane& plane, const PlaneInput& input, const Til
 }
 
 bool is_transformed(Coordinate which) {
-  return which == Coordinate::x || which == Coordinate::y || which >= Coordinate::point_x;
+  return which == Coordinate::x || which == Coordinate::y ||
+         (which >= Coordinate::point_x && which <= Coordinate::point_z);
 }
 
 // The plane at any places.
@@ -167,7 +176,8 @@ const std::vector<StreamName>& image_plane_names() {
       {"py", 1, sample},    {"frame", 1, frame},      {"time", 1, frame},
       {"fps", 1, frame},    {"width", 1, frame},      {"height", 1, frame},
       {"aspect", 1, frame}, {"pixelsize", 1, frame},  {"pixel_freq", 1, frame},
-      {"seed", 1, frame},   {"begin_frame", 1, frame}};
+      {"seed", 1, frame},   {"begin_frame", 1, frame},
+      {"prepass.near", 1, sample}, {"prepass.far", 1, sample}, {"prepass.step", 1, frame}};
   return names;
 }
 

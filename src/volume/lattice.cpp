@@ -12,7 +12,7 @@ namespace {
 // Room behind the lattice for the last block's voxels.
 constexpr int padding = 16;
 
-enum class Kind { place, unit, index };
+enum class Kind { place, unit, index, lowest, highest };
 
 struct Brought {
   std::string_view name;
@@ -20,7 +20,7 @@ struct Brought {
   int axis;  // of pse
 };
 
-constexpr std::array<Brought, 12> brought = {{{"point.0", Kind::place, 0},
+constexpr std::array<Brought, 14> brought = {{{"point.0", Kind::place, 0},
                                               {"point.1", Kind::place, 1},
                                               {"point.2", Kind::place, 2},
                                               {"x", Kind::place, 0},
@@ -31,7 +31,9 @@ constexpr std::array<Brought, 12> brought = {{{"point.0", Kind::place, 0},
                                               {"w", Kind::unit, 2},
                                               {"px", Kind::index, 0},
                                               {"py", Kind::index, 1},
-                                              {"pz", Kind::index, 2}}};
+                                              {"pz", Kind::index, 2},
+                                              {"prepass.near", Kind::lowest, 0},
+                                              {"prepass.far", Kind::highest, 0}}};
 
 }  // namespace
 
@@ -72,7 +74,8 @@ const std::vector<StreamName>& lattice_names() {
       {"py", 1, sample},       {"pz", 1, sample},        {"frame", 1, frame},  {"time", 1, frame},
       {"fps", 1, frame},       {"width", 1, frame},      {"height", 1, frame}, {"depth", 1, frame},
       {"aspect", 1, frame},    {"pixelsize", 1, frame},  {"seed", 1, frame},
-      {"pixel_freq", 1, frame}, {"begin_frame", 1, frame}};
+      {"pixel_freq", 1, frame}, {"begin_frame", 1, frame}, {"prepass.near", 1, sample},
+      {"prepass.far", 1, sample}, {"prepass.step", 1, frame}};
   return names;
 }
 
@@ -119,8 +122,10 @@ LatticeSource::LatticeSource(const ir::Module& module, const Lattice& lattice) {
       const double index = (lattice.backwards(found->axis) ? count - 1 - k : k) + 0.5;
       const double value =
           found->kind == Kind::place ? lattice.point(voxel)[static_cast<std::size_t>(found->axis)]
-          : found->kind == Kind::unit ? index / count
-                                      : index;
+          : found->kind == Kind::unit    ? index / count
+          : found->kind == Kind::lowest  ? -1e30
+          : found->kind == Kind::highest ? 1e30
+                                         : index;
       feed.values.push_back(static_cast<float>(value));
     }
     feeds_.push_back(std::move(feed));

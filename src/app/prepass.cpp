@@ -1,0 +1,277 @@
+// Searching, widening, following and probing.
+#include "app/prepass.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/surfaces.h"
+#include "image/writer.h"
+#include "stream/batches.h"
+
+namespace pse::app {
+namespace {
+
+constexpr float nowhere_near = 1e30f, nowhere_far = -1e30f;
+constexpr int probe_block = 24;  // one probe in a square of so many pixels
+
+// A place within a block that looks random and is the same at every run.
+int scattered(int x, int y, int salt, int below) {
+  std::uint32_t h = static_cast<std::uint32_t>(x) * 0x9e3779b1u ^
+                    static_cast<std::uint32_t>(y) * 0x85ebca77u ^
+                    static_cast<std::uint32_t>(salt) * 0xc2b2ae3du;
+  h = (h ^ (h >> 15)) * 0x2c1b3c6du;
+  h ^= h >> 12;
+  return static_cast<int>(h % static_cast<std::uint32_t>(below));
+}
+
+// One prepass at work.
+class Prepass {
+ public:
+  Prepass(SpanSearch& search, int width, int height, int factor, PrepassReport& report)
+      : search_(search), width_(width), height_(height), report_(report) {
+    spans_.cell = factor;
+    spans_.width = (width + factor - 1) / factor;
+    spans_.height = (height + factor - 1) / factor;
+    const auto cells = std::size_t(spans_.width) * std::size_t(spans_.height);
+    spans_.near.assign(cells, nowhere_near);
+    spans_.far.assign(cells, nowhere_far);
+    checked_.assign(cells, false);
+  }
+
+  std::optional<Spans> run() {
+    if (!search_cells() || !follow()) return std::nullopt;
+    if (!probe() || !follow()) return std::nullopt;
+    return spans_;
+  }
+
+ private:
+  // The middle rays of the cells, in coarse steps. Cells twice as large say first where to look.
+  bool search_cells() {
+    if (spans_.cell < 4) return search_cells_within(nullptr);
+    Prepass large(search_, width_, height_, 2 * spans_.cell, report_);
+    return large.search_cells_within(nullptr) && search_cells_within(&large);
+  }
+
+  // Each cell takes its neighbours' stretches too.
+  bool search_cells_within(const Prepass* large) {
+    std::vector<SpanSearch::Ray> rays;
+    std::vector<std::pair<int, int>> cells;
+    const double n = spans_.cell;
+    for (int y = 0; y < spans_.height; ++y)
+      for (int x = 0; x < spans_.width; ++x) {
+        SpanSearch::Ray ray{std::min((x + 0.5) * n, width_ - 0.5),
+                            std::min((y + 0.5) * n, height_ - 0.5)};
+        if (large != nullptr) {
+          const std::size_t i = large->spans_.at(x / 2, y / 2);
+          if (large->spans_.empty(i)) continue;
+          ray.near = large->spans_.near[i], ray.far = large->spans_.far[i];
+        }
+        rays.push_back(ray);
+        cells.emplace_back(x, y);
+      }
+    report_.searched += static_cast<std::int64_t>(rays.size());
+    if (!search_.look(rays, spans_.cell)) return false;
+    for (const auto& ray : rays)
+      if (ray.near < ray.far) reach_ = std::min(reach_, ray.far - ray.near);
+    for (std::size_t k = 0; k < rays.size(); ++k)
+      if (rays[k].near < rays[k].far)
+        spread(cells[k].first, cells[k].second, rays[k].near - reach_, rays[k].far + reach_);
+    return true;
+  }
+
+  // Gives a stretch to a cell and its neighbours; those that change are to be checked.
+  void spread(int x, int y, float from, float to) {
+    each_neighbour(x, y, [&](int nx, int ny) {
+      const std::size_t i = spans_.at(nx, ny);
+      if (spans_.widen(i, from, to)) checked_[i] = false;
+    });
+  }
+
+  template <class Work>
+  void each_neighbour(int x, int y, Work work) const {
+    for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, spans_.height - 1); ++ny)
+      for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, spans_.width - 1); ++nx)
+        work(nx, ny);
+  }
+
+  bool is_empty(int x, int y) const {
+    return x >= 0 && y >= 0 && x < spans_.width && y < spans_.height && spans_.empty(spans_.at(x, y));
+  }
+
+  // Where cells with matter border on cells without, looks at the outermost pixels step by step: if
+  // there is matter, it may go on next door.
+  bool follow() {
+    for (;;) {
+      std::vector<SpanSearch::Ray> rays;
+      std::vector<std::pair<int, int>> cells;
+      for (int y = 0; y < spans_.height; ++y)
+        for (int x = 0; x < spans_.width; ++x) {
+          const std::size_t i = spans_.at(x, y);
+          if (spans_.empty(i) || checked_[i]) continue;
+          checked_[i] = true;
+          add_border(x, y, rays, cells);
+        }
+      if (rays.empty()) return true;
+      report_.searched += static_cast<std::int64_t>(rays.size());
+      if (!search_.look(rays, 1)) return false;
+      for (std::size_t k = 0; k < rays.size(); ++k) {
+        if (!(rays[k].near < rays[k].far)) continue;
+        const auto [x, y] = cells[k];
+        each_neighbour(x, y, [&](int nx, int ny) { report_.grown += is_empty(nx, ny) ? 1 : 0; });
+        spread(x, y, rays[k].near - reach_, rays[k].far + reach_);
+      }
+    }
+  }
+
+  // The pixels of a cell that touch empty cells.
+  void add_border(int cx, int cy, std::vector<SpanSearch::Ray>& rays,
+                  std::vector<std::pair<int, int>>& cells) const {
+    const int n = spans_.cell;
+    const int x0 = cx * n, y0 = cy * n;
+    const int x1 = std::min(x0 + n, width_) - 1, y1 = std::min(y0 + n, height_) - 1;
+    for (int y = y0; y <= y1; ++y)
+      for (int x = x0; x <= x1; ++x) {
+        const int dx = x == x0 ? -1 : x == x1 ? 1 : 0, dy = y == y0 ? -1 : y == y1 ? 1 : 0;
+        if (!is_empty(cx + dx, cy) && !is_empty(cx, cy + dy) && !is_empty(cx + dx, cy + dy)) continue;
+        const std::size_t i = spans_.at(cx, cy);
+        rays.push_back({x + 0.5, y + 0.5, spans_.near[i] - reach_, spans_.far[i] + reach_});
+        cells.emplace_back(cx, cy);
+      }
+  }
+
+  // Single pixels, all steps of their rays: what is found outside the stretches was missed.
+  bool probe() {
+    std::vector<SpanSearch::Ray> rays;
+    for (int y0 = 0; y0 < height_; y0 += probe_block)
+      for (int x0 = 0; x0 < width_; x0 += probe_block) {
+        const int x = x0 + scattered(x0, y0, 1, probe_block), y = y0 + scattered(x0, y0, 2, probe_block);
+        if (x < width_ && y < height_) rays.push_back({x + 0.5, y + 0.5});
+      }
+    report_.searched += static_cast<std::int64_t>(rays.size());
+    report_.probes += static_cast<std::int64_t>(rays.size());
+    if (!search_.look(rays, 1)) return false;
+    for (const auto& ray : rays) {
+      if (!(ray.near < ray.far)) continue;
+      if (!std::isfinite(reach_)) reach_ = 0;
+      const int x = static_cast<int>(ray.x) / spans_.cell, y = static_cast<int>(ray.y) / spans_.cell;
+      const std::size_t i = spans_.at(x, y);
+      if (spans_.near[i] <= ray.near && spans_.far[i] >= ray.far) continue;
+      ++report_.missed;
+      reach_ = std::max(reach_, ray.far - ray.near);
+      spread(x, y, ray.near - reach_, ray.far + reach_);
+    }
+    return true;
+  }
+
+  SpanSearch& search_;
+  const int width_, height_;
+  PrepassReport& report_;
+  Spans spans_;
+  std::vector<bool> checked_;
+  float reach_ = std::numeric_limits<float>::infinity();  // a coarse step along the ray
+};
+
+}  // namespace
+
+bool Spans::widen(std::size_t i, float from, float to) {
+  if (near[i] <= from && far[i] >= to) return false;
+  near[i] = std::min(near[i], from);
+  far[i] = std::max(far[i], to);
+  return true;
+}
+
+SpanSearch::SpanSearch(const Program& program, const ImagePlane& plane,
+                       const std::vector<Knob>& knobs,
+                       const std::vector<ExternalFunction>& externals, int threads,
+                       RunStatus& status)
+    : program_(program),
+      places_(image_plane_samples(program.module(), plane)),
+      start_(plane_state(program.module(), plane, knobs)),
+      threads_(threads),
+      status_(status) {
+  start_.externals = externals;
+  const auto& outputs = program.module().outputs;
+  const auto find = [&](const char* name) {
+    return static_cast<std::size_t>(
+        std::find_if(outputs.begin(), outputs.end(),
+                     [&](const ir::Output& output) { return output.name == name; }) -
+        outputs.begin());
+  };
+  near_output_ = find("span.0");
+  far_output_ = find("span.1");
+  count_output_ = find("evaluations");
+}
+
+bool SpanSearch::look(std::vector<Ray>& rays, int step) {
+  constexpr std::int64_t batch = 1024;
+  const ir::Module& module = program_.module();
+  FrameState state = start_;
+  for (std::size_t i = 0; i < module.inputs.size(); ++i)
+    if (module.inputs[i].name == "prepass.step") state.uniforms[i] = static_cast<float>(step);
+  program_.kernel->run_frame(state, status_);
+  if (status_.failed_check >= 0 || status_.cancel) return false;
+
+  const auto part = [&](std::int64_t number) {
+    const auto size = static_cast<std::int64_t>(rays.size());
+    return std::span(rays).subspan(static_cast<std::size_t>(number * batch),
+                                   static_cast<std::size_t>(std::min(batch, size - number * batch)));
+  };
+  std::vector<double> counts(rays.size() / batch + 1);
+  BatchPlan plan;
+  plan.batches = (static_cast<std::int64_t>(rays.size()) + batch - 1) / batch;
+  plan.capacity = batch;
+  plan.threads = threads_;
+  plan.count = [&](std::int64_t number) { return static_cast<std::int64_t>(part(number).size()); };
+  plan.fill = [&](std::int64_t number, std::span<float* const> planes) {
+    const auto some = part(number);
+    std::vector<double> x, y;
+    for (const Ray& ray : some) x.push_back(ray.x), y.push_back(ray.y);
+    places_->fill(x, y, planes);
+    for (std::size_t i = 0; i < module.inputs.size(); ++i) {
+      if (planes[i] == nullptr) continue;
+      for (std::size_t k = 0; k < some.size(); ++k) {
+        if (module.inputs[i].name == "prepass.near") planes[i][k] = some[k].near;
+        if (module.inputs[i].name == "prepass.far") planes[i][k] = some[k].far;
+      }
+    }
+  };
+  plan.drain = [&](std::int64_t number, std::span<float* const> planes) {
+    const auto some = part(number);
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      some[k].near = planes[near_output_][k];
+      some[k].far = planes[far_output_][k];
+      if (count_output_ < module.outputs.size())
+        counts[static_cast<std::size_t>(number)] += double(planes[count_output_][k]);
+    }
+  };
+  const BatchEnd end = run_batches(program_, state, plan, status_);
+  for (const double count : counts) evaluations_ += count;
+  return end.end == RunEnd::finished;
+}
+
+std::optional<Spans> find_spans(SpanSearch& search, int width, int height, int factor,
+                                PrepassReport& report) {
+  auto spans = Prepass(search, width, height, factor, report).run();
+  report.evaluations = search.evaluations();
+  return spans;
+}
+
+void write_spans(const Spans& spans, int width, int height, const std::string& file) {
+  image::ImageSpec spec;
+  spec.display = spec.data = {0, 0, width, height};
+  spec.channels = {{"near.Y", image::PixelType::float32}, {"far.Y", image::PixelType::float32}};
+  image::Image image(spec);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const std::size_t cell = spans.at(x / spans.cell, y / spans.cell);
+      image.pixel(0, x, y) = spans.near[cell];
+      image.pixel(1, x, y) = spans.far[cell];
+    }
+  image::WriteOptions options;
+  options.format = "exr";
+  options.sync = false;
+  if (const auto done = image::write_image(file, image, options); !done)
+    throw Failure(Exit::output, done.error().message);
+}
+
+}  // namespace pse::app

@@ -1,0 +1,74 @@
+// The coarse prepass of a ray marcher: where matter is on each pixel's ray is found out at a lower
+// resolution and kept as an image, which restricts the picture's own march. Chapter, "Smoke",
+// "Optimization". The program says where matter is by `span = raymarch_interval(...)`
+// (library/raymarch.pse); what was found comes back to it as `prepass.near` and `prepass.far`.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "app/knobs.h"
+#include "app/program_file.h"
+#include "app/signals.h"
+#include "app/textures.h"
+#include "stream/image_plane.h"
+#include "stream/sample_source.h"
+
+namespace pse::app {
+
+// Where there is matter on the rays through the cells of a picture; near above far: nowhere.
+struct Spans {
+  int width = 0, height = 0;  // in cells
+  int cell = 1;               // side of a cell in pixels
+  std::vector<float> near, far;
+
+  std::size_t at(int x, int y) const { return std::size_t(y) * std::size_t(width) + std::size_t(x); }
+  bool empty(std::size_t i) const { return !(near[i] <= far[i]); }
+  // Adds a stretch to a cell's; true where that changes it.
+  bool widen(std::size_t i, float from, float to);
+};
+
+struct PrepassReport {
+  std::int64_t searched = 0;  // rays looked at, of whatever step
+  std::int64_t probes = 0;    // pixels looked at step by step, wherever they are
+  std::int64_t missed = 0;    // those with matter that the coarse search did not find
+  std::int64_t grown = 0;     // cells added where matter went on beyond those found
+  double evaluations = 0;     // sum of the program's `evaluations`, where it sets them
+};
+
+// Looks for matter along rays through any places of the picture.
+class SpanSearch {
+ public:
+  // `program` sets `span`, and perhaps `evaluations`.
+  SpanSearch(const Program& program, const ImagePlane& plane, const std::vector<Knob>& knobs,
+             const std::vector<ExternalFunction>& externals, int threads, RunStatus& status);
+
+  struct Ray {
+    double x = 0, y = 0;           // in pixels
+    float near = -1e30f, far = 1e30f;  // look here only; receives what was found
+  };
+  // Takes every `step`th step of each ray. False when cancelled or failed.
+  bool look(std::vector<Ray>& rays, int step);
+  double evaluations() const { return evaluations_; }
+
+ private:
+  const Program& program_;
+  std::unique_ptr<SampleSource> places_;
+  FrameState start_;  // before the frame function has run
+  int threads_;
+  RunStatus& status_;
+  std::size_t near_output_ = 0, far_output_ = 0, count_output_ = 0;
+  double evaluations_ = 0;
+};
+
+// The whole prepass of one frame: every `factor`th pixel and step, widened by one cell on all
+// sides; then followed wherever matter goes on beyond the cells found; then probed at single pixels
+// for what is too thin to have been seen, which is followed too. Nothing when cancelled or failed.
+std::optional<Spans> find_spans(SpanSearch& search, int width, int height, int factor,
+                                PrepassReport& report);
+
+// Writes the spans as an image with the pixels of the picture and the channels near and far.
+// Throws Failure (output).
+void write_spans(const Spans& spans, int width, int height, const std::string& file);
+
+}  // namespace pse::app

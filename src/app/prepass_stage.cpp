@@ -1,0 +1,96 @@
+// From options to images of spans.
+#include "app/prepass_stage.h"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include "app/compile_settings.h"
+#include "app/function_program.h"
+#include "app/render_job.h"
+#include "app/report.h"
+#include "image/sequence.h"
+#include "lang/parser.h"
+
+namespace pse::app {
+
+PrepassStage::~PrepassStage() {
+  std::error_code ignored;
+  if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+}
+
+Exit PrepassStage::run(Session& session, RenderOptions& options, ProgramFile& program,
+                       const std::vector<KnobSetting>& settings, Signals& signals) {
+  Diagnostics diagnostics, ignored;
+  const lang::Program tree = lang::parse(program.sources, program.file, ignored);
+  if (ignored.has_errors()) return Exit::ok;  // the render reports them
+  if (!sets_at_top(tree, "span"))
+    throw usage_error("the program does not say where matter is: it sets no `span`",
+                      "span = raymarch_interval(density, origin, dir, near, far, step)");
+  if (!options.images.empty() || !options.on.empty())
+    throw usage_error("--prepass works on the image plane, without images and surfaces");
+
+  // The program again, for its spans alone.
+  CompileOptions compile_with = compile_settings(options, settings);
+  compile_with.lower.stream = image_plane_names();
+  compile_with.lower.outputs = {"span"};
+  const bool counts = options.count_evaluations && sets_at_top(tree, "evaluations");
+  if (counts) compile_with.lower.outputs.emplace_back("evaluations");
+  LowerHost host = module_host(program.path, session);
+  Textures stored(session, program.path, options.write.working);
+  stored.answer(host);
+  const auto compiled =
+      compile(program.sources, program.file, host, compile_with, diagnostics);
+  report(diagnostics, program.sources, session);
+  if (!compiled) throw Failure(Exit::program, "");
+  for (const ProgramOutput& output : compiled->outputs)
+    if (output.name == "span" && output.components != 2)
+      throw Failure(Exit::program, "`span` is a vector of two: [near far]");
+  const std::vector<Knob> knobs = apply_settings(compiled->knobs, settings, session.console);
+  stored.load(compiled->module());
+
+  // One image per frame.
+  const Resolution size = options.resolution.value_or(Resolution{512, 512});
+  std::string pattern = options.prepass_image;
+  if (pattern.empty()) {
+    std::string name = (std::filesystem::temp_directory_path() / "pse-prepass-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr)
+      throw Failure(Exit::output, "there is no folder for the prepass's images");
+    folder_ = name;
+    pattern = (folder_ / "span.%04d.exr").string();
+  }
+  RunStatus status;
+  const SignalWatch watch(signals, status);
+  PrepassReport total;
+  for (const int frame : choose_frames(options)) {
+    const ImagePlane plane{.width = size.width,
+                           .height = size.height,
+                           .frame = double(frame),
+                           .fps = options.fps,
+                           .seed = options.seed,
+                           .transform = options.transform};
+    SpanSearch search(*compiled, plane, knobs, stored.functions(), options.threads, status);
+    PrepassReport found;
+    const auto spans = find_spans(search, size.width, size.height, options.prepass, found);
+    if (const int signal = signals.stop_signal()) return static_cast<Exit>(128 + signal);
+    if (!spans) {
+      const auto check = static_cast<std::size_t>(std::max(0, status.failed_check.load()));
+      throw Failure(Exit::running, check < compiled->module().checks.size()
+                                       ? compiled->module().checks[check].message
+                                       : "the prepass stopped");
+    }
+    write_spans(*spans, size.width, size.height, *image::frame_name(pattern, frame));
+    total.probes += found.probes, total.missed += found.missed;
+    total.evaluations += found.evaluations;
+  }
+  if (total.missed > 0)
+    session.console.warning(fmt::format(
+        "the prepass did not see matter at {} of {} probes: it is thinner than {} pixels or steps. "
+        "It was followed from there; a smaller --prepass sees more",
+        total.missed, total.probes, options.prepass));
+  if (counts)
+    session.console.note(fmt::format("prepass: {:.0f} density evaluations", total.evaluations));
+  options.images.push_back({"prepass", pattern, true});
+  return Exit::ok;
+}
+
+}  // namespace pse::app

@@ -1,0 +1,117 @@
+// The prepass: the same picture from fewer steps, thin matter is found or told of; and slices.
+#include <cmath>
+
+#include "run_pse.h"
+
+namespace pse::test {
+namespace {
+
+class Prepass : public CommandLine {
+ protected:
+  // A picture of a density, with and without prepass; evaluations counts what marching took.
+  void program(const std::string& density) {
+    file("a.pse", "function density(p)\n" + density +
+                      "function light(p, d)\n    return [1 0.5 p.z]\n"
+                      "origin = [0.5 * x, 0.5 * y, 2]\n"
+                      "span = raymarch_interval(density, origin, [0 0 -1], 1.5, 2.5, 1 / height)\n"
+                      "evaluations = raymarch_count(density, origin, [0 0 -1], 1.5, 2.5, 1 / height)\n"
+                      "color = raymarch(density, light, origin, [0 0 -1], 1.5, 2.5, 1 / height)\n");
+  }
+  image::Image render(const std::vector<std::string>& options, const std::string& what = "color") {
+    std::vector<std::string> words = {"render", "a.pse",   "-o",     what + "=a.exr",
+                                      "--res",  "128x128", "--float", "--antialias", "none"};
+    words.insert(words.end(), options.begin(), options.end());
+    ended = pse(words);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return picture("a.exr");
+  }
+  static double sum(const image::Image& image) {
+    double total = 0;
+    for (const float value : image.planes[0]) total += double(value);
+    return total;
+  }
+  Ended ended;
+};
+
+TEST_F(Prepass, GivesTheSamePictureFromFewerSteps) {
+  program("    return clamp(8 * (0.12 - length(p - [0.1 0.2 0])), 0, 1)\n");
+  const image::Image whole = render({}), fast = render({"--prepass", "4"});
+  EXPECT_EQ(whole.planes, fast.planes);  // bit for bit: the same steps of the same rays
+  EXPECT_FALSE(contains(ended.err, "warning"));
+  double light = 0;
+  for (const float value : whole.planes[0]) light += double(value);
+  EXPECT_GT(light, 100);
+  const double all = sum(render({}, "evaluations")), few = sum(render({"--prepass", "4"}, "evaluations"));
+  EXPECT_NEAR(all, 128.0 * 128 * 128, 128.0 * 128 * 10);
+  EXPECT_LT(few, all / 20);
+}
+
+TEST_F(Prepass, FollowsAHairThinnerThanItsStep) {
+  // A wire of 1.5 pixels from corner to corner: of 4 x 4 x 4 samples most see nothing.
+  program(
+      "    a = [-0.45 -0.4 -0.3]\n    b = [0.4 0.45 0.35]\n"
+      "    t = clamp(dot(p - a, b - a) / dot(b - a, b - a), 0, 1)\n"
+      "    return length(p - a - t * (b - a)) < 0.75 / height ? 0.9 : 0\n");
+  const image::Image whole = render({}), fast = render({"--prepass", "4"});
+  int there = 0, missing = 0;
+  for (std::size_t i = 0; i < whole.planes[0].size(); ++i) {
+    there += whole.planes[0][i] > 0 ? 1 : 0;
+    missing += whole.planes[0][i] != fast.planes[0][i] ? 1 : 0;
+  }
+  EXPECT_GT(there, 80);
+  EXPECT_EQ(missing, 0);
+}
+
+TEST_F(Prepass, TellsOfSpecksThatItCannotSee) {
+  // Motes of a third of a pixel's size, far apart: no search sees them all, so it is said.
+  program("    return length(fract(16 * p) - 0.5) < 0.12 ? 0.9 : 0\n");
+  render({"--prepass", "8"});
+  EXPECT_TRUE(contains(ended.err, "the prepass did not see matter")) << ended.err;
+}
+
+TEST_F(Prepass, IsAnImageOfNearAndFar) {
+  program("    return length(p) < 0.2 ? 0.5 : 0\n");
+  render({"--prepass", "4", "--prepass-image", "span.exr"});
+  const image::Image span = picture("span.exr");
+  const int near = span.spec.find("near.Y"), far = span.find("far.Y");
+  ASSERT_GE(near, 0);
+  // The middle ray meets the ball from 1.8 to 2.2; the interval is at most three coarse steps longer.
+  EXPECT_LE(span.at(near, 64, 64), 1.8f);
+  EXPECT_GE(span.at(near, 64, 64), 1.8f - 3 * 4.0f / 128);
+  EXPECT_GE(span.at(far, 64, 64), 2.2f);
+  EXPECT_GT(span.at(near, 3, 3), span.at(far, 3, 3));  // nothing in the corner
+  // The image alone does the same as the option.
+  const image::Image again = render({"prepass=span.exr"});
+  EXPECT_EQ(again.planes, render({}).planes);
+}
+
+TEST_F(Prepass, NeedsASpan) {
+  file("b.pse", "color = [x y 0]\n");
+  const Ended refused = pse({"render", "b.pse", "-o", "b.png", "--prepass", "4"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_TRUE(contains(refused.err, "raymarch_interval"));
+  file("c.pse", "span = x\ncolor = [x y 0]\n");
+  EXPECT_EQ(pse({"render", "c.pse", "-o", "b.png", "--prepass", "4"}).status, 3);
+}
+
+TEST_F(Prepass, SlicesShowTheDensityOnAPlane) {
+  file("s.pse", "function density(p)\n    return p.x + 10 * p.y + 100 * p.z\ncolor = [7 7 7]\n");
+  const auto slice = [&](const std::string& where, std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {"render", "s.pse", "-o", "color=s.exr", "--res", "4", "--float",
+                               "--antialias", "none", "--slice", where});
+    const Ended done = pse(more);
+    EXPECT_EQ(done.status, 0) << done.err;
+    return picture("s.exr");
+  };
+  // Pixel (3, 0) is at 0.75 right and 0.75 up.
+  EXPECT_FLOAT_EQ(slice("z=0.5").at(0, 3, 0), 0.75f + 7.5f + 50);
+  EXPECT_FLOAT_EQ(slice("x=0.5").at(0, 3, 0), 0.5f + 7.5f - 75);   // right is -z
+  EXPECT_FLOAT_EQ(slice("y=0.5").at(0, 3, 0), 0.75f + 5 - 75);     // up is -z
+  EXPECT_FLOAT_EQ(slice("z=0", {"XFORM=2,0,0,0,2,0"}).at(0, 3, 0), 1.5f + 15);
+  EXPECT_EQ(pse({"render", "s.pse", "-o", "s.png", "--slice", "w=1"}).status, 2);
+  file("t.pse", "color = [x y 0]\n");
+  EXPECT_EQ(pse({"render", "t.pse", "-o", "s.png", "--slice", "z=0"}).status, 2);
+}
+
+}  // namespace
+}  // namespace pse::test

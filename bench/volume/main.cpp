@@ -68,7 +68,7 @@ bool measure(const std::string& name, const Words& program, const std::string& r
   const auto render = [&](const std::string& tag, const Words& more) {
     Words words = {"render"};
     words.insert(words.end(), program.begin(), program.end());
-    words.insert(words.end(), {"--res", res, "-o", (folder / (tag + ".png")).string()});
+    words.insert(words.end(), {"--antialias", "none", "--res", res, "-o", (folder / (tag + ".png")).string()});
     words.insert(words.end(), more.begin(), more.end());
     return run_pse(words, folder / "log", said);
   };
@@ -107,12 +107,12 @@ int main(int count, char** arguments) {
     good = measure(words.front(), words, res, folder);
   } else {
     const std::string smoke = PSE_SOURCE_DIR "/gallery/2002/hypertexture/smoke.pse";
-    const std::string ring = PSE_SOURCE_DIR "/gallery/2002/hypertexture/smoke_ring.pse";
     for (const auto& [name, more] : std::vector<std::pair<std::string, Words>>{
              {"smoke", {smoke}},
-             {"smoke, wide", {smoke, "Width=0.075"}},
+             {"smoke, wide", {smoke, "Width=0.065"}},
              {"smoke, later", {smoke, "Time=1.7"}},
-             {"smoke ring", {ring}}})
+             {"smoke ring",
+              {smoke, "Amount=0.9", "Frequency=3", "Near=12", "Width=0.035", "Time=0.3"}}})
       good = measure(name, more, res, folder) && good;
   }
   fs::remove_all(folder);

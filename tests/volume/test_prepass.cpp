@@ -73,7 +73,7 @@ TEST_F(Prepass, IsAnImageOfNearAndFar) {
   program("    return length(p) < 0.2 ? 0.5 : 0\n");
   render({"--prepass", "4", "--prepass-image", "span.exr"});
   const image::Image span = picture("span.exr");
-  const int near = span.spec.find("near.Y"), far = span.find("far.Y");
+  const int near = span.spec.find("near.Y"), far = span.spec.find("far.Y");
   ASSERT_GE(near, 0);
   // The middle ray meets the ball from 1.8 to 2.2; the interval is at most three coarse steps longer.
   EXPECT_LE(span.at(near, 64, 64), 1.8f);

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "app/atlas_command.h"
 #include "app/bake_job.h"
 #include "app/compile_settings.h"
 #include "app/function_program.h"
@@ -61,6 +62,7 @@ GridNames choose_grids(const lang::Program& tree, const OutputRequest& request) 
 }  // namespace
 
 Exit bake_command(Session& session) {
+  if (wants_atlas(session.arguments)) return bake_atlas(session);
   Signals signals;
   const VolumeOptions options = bake_options(session);
   const RenderOptions& common = options.common;

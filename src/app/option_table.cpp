@@ -231,7 +231,8 @@ std::vector<OptionSpec> bake_options() {
        "output",
        many,
        "FILE",
-       "the file to write: NAME.vdb; NAMES=FILE writes the grids NAMES, separated by commas",
+       "the file to write: NAME.vdb for a volume, a picture for a mesh's texture; NAMES=FILE writes "
+       "the grids or variables NAMES, separated by commas",
        {},
        Offer::file},
       shared("frames"),
@@ -240,7 +241,15 @@ std::vector<OptionSpec> bake_options() {
        "res",
        one,
        "N",
-       "voxels along the longest side, or NxNxN along x, y and z; default 128"},
+       "voxels along the longest side, or NxNxN along x, y and z; default 128. Of a texture N or "
+       "WxH texels; default 2048"},
+      {"", "samples", one, "N", "texture: samples in each texel, 1, 4, 9...; default 1"},
+      {"",
+       "dilate",
+       one,
+       "N",
+       "texture: texels that colours reach beyond the edges of charts; default 16"},
+      {"", "udim", one, "TILE", "texture: the tile to bake, 1001 and on, of a mesh with several"},
       {"",
        "bounds",
        one,
@@ -330,8 +339,13 @@ const std::vector<CommandSpec>& table() {
         {"pse trace scene.toml -o scene.exr", "a scene"},
         {"pse render marble.pse bunny.exr -o bunny.png", "shade it"}}},
       {"bake",
-       "PROGRAM [Name=VALUE...] -o FILE.vdb",
-       "compute a volume",
+       "PROGRAM [MESH] [Name=VALUE...] -o FILE",
+       "compute a volume, or the texture of a mesh",
+       "With a MESH (.obj .ply .gltf .glb) and a picture to write: runs PROGRAM at every texel of the "
+       "mesh's texture coordinates, where it reads point, normal and uv as on a visible surface, and "
+       "writes what it sets. As with --on the mesh is fitted; \"MESH fit=false\" keeps its size.\n"
+       "\n"
+       "Otherwise a volume. "
        "Runs PROGRAM at every voxel of a box and writes the variables density, temperature, color "
        "and distance that it sets as grids of an OpenVDB file. In a program that sets none of them "
        "the functions of these names are called instead: `function density(p)` is enough.\n"
@@ -340,7 +354,8 @@ const std::vector<CommandSpec>& table() {
        "kelvin. `distance` makes a level set: metres to a surface, negative inside.",
        Offer::program,
        bake_options(),
-       {{"pse bake cloud.pse -o cloud.vdb --res 200", "density, temperature and color"},
+       {{"pse bake marble.pse spot.obj -o albedo.png --res 1024 --samples 4", "a texture"},
+        {"pse bake cloud.pse -o cloud.vdb --res 200", "density, temperature and color"},
         {"pse bake fire.pse -f 1-100 -o fire.%04d.vdb --bounds -1,0,-1,1,3,1", "a sequence"},
         {"pse bake cloud.pse -o density=cloud.vdb --up z", "one grid, for a program with z up"}}},
       {"check",

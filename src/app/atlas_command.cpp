@@ -51,7 +51,8 @@ AtlasOptions atlas_options(const Session& session) {
     const int samples = parse_integer(*value, 1, 256);
     options.size.samples = static_cast<int>(std::lround(std::ceil(std::sqrt(samples))));
   }
-  if (const auto value = arguments.value("udim")) options.size.tile = parse_integer(*value, 1001, 9999);
+  if (const auto value = arguments.value("udim"))
+    options.size.tile = parse_integer(*value, 1001, 9999);
   if (const auto value = arguments.value("dilate")) options.margin = parse_integer(*value, 0, 4096);
   const auto& s = options.size;
   if (double(s.width) * s.height * s.samples * s.samples > most_samples)
@@ -119,13 +120,13 @@ bool wants_atlas(const Arguments& arguments) {
     return output.text.ends_with(".vdb");
   });
   if (volume || arguments.positionals.size() < 2) return false;
-  return std::any_of(
-      arguments.positionals.begin() + 1, arguments.positionals.end(), [](const std::string& word) {
-        const std::string file = word.substr(0, word.find(' '));
-        for (const char* ending : {".obj", ".ply", ".gltf", ".glb"})
-          if (file.ends_with(ending)) return true;
-        return false;
-      });
+  return std::any_of(arguments.positionals.begin() + 1, arguments.positionals.end(),
+                     [](const std::string& word) {
+                       const std::string file = word.substr(0, word.find(' '));
+                       for (const char* ending : {".obj", ".ply", ".gltf", ".glb"})
+                         if (file.ends_with(ending)) return true;
+                       return false;
+                     });
 }
 
 Exit bake_atlas(Session& session) {
@@ -195,8 +196,14 @@ Exit bake_atlas(Session& session) {
     }
 
     // Write.
-    const RenderContext context{common, program.sources, program.file, *compiled, knobs, plane,
-                                Rect{0, 0, plane.width, plane.height}, stored.identities()};
+    const RenderContext context{common,
+                                program.sources,
+                                program.file,
+                                *compiled,
+                                knobs,
+                                plane,
+                                Rect{0, 0, plane.width, plane.height},
+                                stored.identities()};
     for (const PlannedFile& file : files) {
       image::ImageSpec spec;
       spec.display = spec.data = {0, 0, plane.width, plane.height};
@@ -211,6 +218,8 @@ Exit bake_atlas(Session& session) {
           if (!std::isfinite(value)) ++bad, value = 0;
         picture.planes.push_back(surface::resolve(*atlas, values, options.margin));
       }
+      if (bad > 0 && common.nan == image::NanPolicy::error)
+        throw Failure(Exit::strict, fmt::format("{} results are NaN or infinite", bad));
       if (bad > 0)
         session.console.warning(
             fmt::format("{} results were NaN or infinite; 0 is stored there", bad));

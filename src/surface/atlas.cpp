@@ -32,8 +32,8 @@ Vec3 normal_of(const Mesh& mesh, std::uint32_t vertex) {
 // The weights of the point of a triangle nearest to p, and its squared distance; 0 inside.
 struct Nearest {
   double b = 0, c = 0, distance = 0;
-  bool within = false;   // clearly inside, away from the edges
-  bool touches = true;   // the square of side 1 around p reaches that point
+  bool within = false;  // clearly inside, away from the edges
+  bool touches = true;  // the square of side 1 around p reaches that point
 };
 
 Nearest nearest_point(const std::array<Point, 3>& t, double area, const Point& p) {
@@ -49,9 +49,9 @@ Nearest nearest_point(const std::array<Point, 3>& t, double area, const Point& p
   for (std::size_t i = 0; i < 3; ++i) {
     const Point &from = t[i], &to = t[(i + 1) % 3];
     const Point edge{to.x - from.x, to.y - from.y};
-    const double s = std::clamp(((p.x - from.x) * edge.x + (p.y - from.y) * edge.y) /
-                                    (edge.x * edge.x + edge.y * edge.y),
-                                0.0, 1.0);
+    const double s = std::clamp(
+        ((p.x - from.x) * edge.x + (p.y - from.y) * edge.y) / (edge.x * edge.x + edge.y * edge.y),
+        0.0, 1.0);
     const double dx = from.x + s * edge.x - p.x, dy = from.y + s * edge.y - p.y;
     if (dx * dx + dy * dy >= best.distance) continue;
     best.distance = dx * dx + dy * dy;
@@ -62,8 +62,8 @@ Nearest nearest_point(const std::array<Point, 3>& t, double area, const Point& p
   return best;
 }
 
-// How much of the mesh's area in texture coordinates lies in each unit square, as UDIM numbers; 0 for
-// squares without one. A triangle belongs where its middle is.
+// How much of the mesh's area in texture coordinates lies in each unit square, as UDIM numbers; 0
+// for squares without one. A triangle belongs where its middle is.
 std::map<int, double> tiles_of(const Mesh& mesh) {
   std::map<int, double> tiles;
   double whole = 0;
@@ -82,7 +82,8 @@ std::map<int, double> tiles_of(const Mesh& mesh) {
 
 std::string what_is_wrong(const Mesh& mesh, int tile) {
   if (mesh.uvs.empty())
-    return "the mesh has no texture coordinates (UVs), so it has no atlas; unwrap it in a modelling "
+    return "the mesh has no texture coordinates (UVs), so it has no atlas; unwrap it in a "
+           "modelling "
            "program first";
   for (const float value : mesh.uvs)
     if (!(std::fabs(value) < 1000))
@@ -112,7 +113,8 @@ std::expected<Atlas, std::string> make_atlas(const Mesh& mesh, const AtlasSize& 
     return std::unexpected(wrong);
   Atlas atlas{size, {}, 0};
   const int columns = atlas.columns(), rows = atlas.rows();
-  // Without a tile everything lies in one square, which repeats; else a tile is a square of its own.
+  // Without a tile everything lies in one square, which repeats; else a tile is a square of its
+  // own.
   const int tile = size.tile == 0 ? 0 : size.tile - 1001;
   const auto count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   constexpr std::uint32_t none = 0xffffffff;
@@ -180,11 +182,11 @@ std::expected<Atlas, std::string> make_atlas(const Mesh& mesh, const AtlasSize& 
 
 std::vector<StreamName> atlas_names() {
   using enum ir::Rate;
-  return {{"point", 3, sample},  {"place", 3, sample}, {"normal", 3, sample},
-          {"flat_normal", 3, sample}, {"view", 3, sample}, {"uv", 2, sample},
-          {"u", 1, sample},      {"v", 1, sample},     {"id", 1, sample},
-          {"hit", 1, sample},    {"backface", 1, sample}, {"px", 1, sample},
-          {"py", 1, sample},     {"pixelsize", 1, sample}, {"pixel_freq", 1, sample}};
+  return {{"point", 3, sample},       {"place", 3, sample},     {"normal", 3, sample},
+          {"flat_normal", 3, sample}, {"view", 3, sample},      {"uv", 2, sample},
+          {"u", 1, sample},           {"v", 1, sample},         {"id", 1, sample},
+          {"hit", 1, sample},         {"backface", 1, sample},  {"px", 1, sample},
+          {"py", 1, sample},          {"pixelsize", 1, sample}, {"pixel_freq", 1, sample}};
 }
 
 TileSource atlas_source(const ir::Module& module, const Mesh& mesh, const Atlas& atlas, int row) {
@@ -198,8 +200,7 @@ TileSource atlas_source(const ir::Module& module, const Mesh& mesh, const Atlas&
     const std::string& name = module.inputs[i].name;
     if (module.inputs[i].rate != ir::Rate::sample) continue;
     const std::size_t dot = name.find('.');
-    wanted.push_back(
-        {i, name.substr(0, dot), dot == std::string::npos ? 0 : name[dot + 1] - '0'});
+    wanted.push_back({i, name.substr(0, dot), dot == std::string::npos ? 0 : name[dot + 1] - '0'});
   }
   const auto value = [&mesh, &atlas](const AtlasSample& s, const std::string& name) -> Vec3 {
     const auto v = corners(mesh, s.triangle);
@@ -207,8 +208,8 @@ TileSource atlas_source(const ir::Module& module, const Mesh& mesh, const Atlas&
     const Vec3 p0 = mesh.position(v[0]), p1 = mesh.position(v[1]), p2 = mesh.position(v[2]);
     if (name == "point" || name == "place") return a * p0 + b * p1 + c * p2;
     if (name == "normal" || name == "view") {
-      const Vec3 n = a * normal_of(mesh, v[0]) + b * normal_of(mesh, v[1]) +
-                     c * normal_of(mesh, v[2]);
+      const Vec3 n =
+          a * normal_of(mesh, v[0]) + b * normal_of(mesh, v[1]) + c * normal_of(mesh, v[2]);
       return normalized(n);
     }
     const Vec3 flat = surface::cross(p1 - p0, p2 - p0);
@@ -221,8 +222,7 @@ TileSource atlas_source(const ir::Module& module, const Mesh& mesh, const Atlas&
     if (name == "id" || name == "hit") return {1, 0, 0};
     const auto columns = static_cast<std::uint32_t>(atlas.columns());
     if (name == "px") return {(s.place % columns + 0.5) / atlas.size.samples, 0, 0};
-    if (name == "py")
-      return {(std::floor(s.place / columns) + 0.5) / atlas.size.samples, 0, 0};
+    if (name == "py") return {(std::floor(s.place / columns) + 0.5) / atlas.size.samples, 0, 0};
     if (name == "pixelsize" || name == "pixel_freq") {
       const double texels = std::fabs(cross(t0, t1, t2)) * atlas.size.width * atlas.size.height;
       const double size = std::sqrt(length(flat) / texels);
@@ -252,9 +252,9 @@ std::vector<float> resolve(const Atlas& atlas, const std::vector<float>& values,
   const auto columns = static_cast<std::uint32_t>(atlas.columns());
   for (std::size_t i = 0; i < atlas.samples.size(); ++i) {
     const std::uint32_t x = atlas.samples[i].place % columns, y = atlas.samples[i].place / columns;
-    const auto texel = std::size_t{y / static_cast<std::uint32_t>(side)} *
-                           static_cast<std::size_t>(width) +
-                       x / static_cast<std::uint32_t>(side);
+    const auto texel =
+        std::size_t{y / static_cast<std::uint32_t>(side)} * static_cast<std::size_t>(width) +
+        x / static_cast<std::uint32_t>(side);
     plane[texel] += values[i];
     ++count[texel];
   }

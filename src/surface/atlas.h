@@ -38,20 +38,20 @@ struct Atlas {
 };
 
 // Which triangle each sample shows. A sample whose centre lies beside a triangle, whose
-// nearest point lies in the sample's square, shows that point: charts are covered up to their edges. The
-// error says what is wrong with the mesh's coordinates.
+// nearest point lies in the sample's square, shows that point: charts are covered up to their
+// edges. The error says what is wrong with the mesh's coordinates.
 std::expected<Atlas, std::string> make_atlas(const Mesh& mesh, const AtlasSize& size);
 
-// point place normal flat_normal view uv u v id hit backface px py pixelsize pixel_freq. The view is
-// straight on; pixelsize is the side of a texel on the surface.
+// point place normal flat_normal view uv u v id hit backface px py pixelsize pixel_freq. The view
+// is straight on; pixelsize is the side of a texel on the surface.
 std::vector<StreamName> atlas_names();
 
 // Fills them in for tiles of samples, taken as a picture `row` samples wide: sample i is pixel
 // (i % row, i / row). Mesh and atlas must outlive the source.
 TileSource atlas_source(const ir::Module& module, const Mesh& mesh, const Atlas& atlas, int row);
 
-// A plane of samples as texels: the mean of each texel's samples, and beyond the edges of charts the
-// mean of neighbours, `margin` texels far. `values` holds one number per sample of the atlas.
+// A plane of samples as texels: the mean of each texel's samples, and beyond the edges of charts
+// the mean of neighbours, `margin` texels far. `values` holds one number per sample of the atlas.
 std::vector<float> resolve(const Atlas& atlas, const std::vector<float>& values, int margin);
 
 }  // namespace pse::surface

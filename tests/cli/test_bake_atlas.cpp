@@ -26,8 +26,8 @@ class BakeAtlas : public CommandLine {
     return index < 0 ? NAN : image.at(index, x, y);
   }
   Ended bake(const std::string& mesh, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> words = {"bake",  "a.pse", mesh, "-o",     "a.exr",
-                                      "--res", "20",    "--float"};
+    std::vector<std::string> words = {"bake",  "a.pse", mesh, "-o",
+                                      "a.exr", "--res", "20", "--float"};
     words.insert(words.end(), more.begin(), more.end());
     return pse(words);
   }
@@ -97,11 +97,12 @@ TEST_F(BakeAtlas, ChartsThatLeaveTheSquareComeInOnTheOtherSide) {
 TEST_F(BakeAtlas, TilesAndOverlaps) {
   file("a.pse", "P = point\n");
   // A square in each of two tiles.
-  const std::string corners = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 5\nv 1 -1 5\n"
-                              "v 1 1 5\nv -1 1 5\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+  const std::string corners =
+      "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 5\nv 1 -1 5\n"
+      "v 1 1 5\nv -1 1 5\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
   const std::string faces = "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
-  file("two.obj", corners + "vt 1 0\nvt 2 0\nvt 2 1\nvt 1 1\n" + faces +
-                      "f 5/5 6/6 7/7\nf 5/5 7/7 8/8\n");
+  file("two.obj",
+       corners + "vt 1 0\nvt 2 0\nvt 2 1\nvt 1 1\n" + faces + "f 5/5 6/6 7/7\nf 5/5 7/7 8/8\n");
   Ended ended = bake("two.obj fit=false");
   EXPECT_EQ(ended.status, 4);
   EXPECT_TRUE(contains(ended.err, "several tiles (1001, 1002)"));
@@ -134,8 +135,8 @@ TEST_F(BakeAtlas, TheBakedTextureLooksLikeTheProgram) {
   const fs::path spot = fs::path(PSE_SOURCE_DIR) / "../shared/data/spot.obj";
   if (!fs::exists(spot)) GTEST_SKIP() << "needs ../shared/data/spot.obj";
   file("solid.pse", "color = 0.5 + 0.4 * [Noise(3 * point), Noise(3 * point + 7), point.y]\n");
-  Ended ended = pse({"bake", "solid.pse", spot.string(), "-o", "solid.exr", "--res", "512",
-                     "--float"});
+  Ended ended =
+      pse({"bake", "solid.pse", spot.string(), "-o", "solid.exr", "--res", "512", "--float"});
   ASSERT_EQ(ended.status, 0) << ended.err;
   file("compare.pse",
        "a = texture(\"solid.exr\", uv)\n"

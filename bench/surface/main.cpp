@@ -142,7 +142,7 @@ void bench_vase(int runs) {
   Job job(marble, surface_names(1));
   job.shader->begin_frame({job.state()}, scene, lens);
   const std::shared_ptr<const SampleSource> source =
-      std::make_shared<SurfaceSource>(job.whole->module(), scene, lens);
+      std::make_shared<SurfaceSource>(job.whole->module(), scene, lens, false);
   for (const int threads : {1, 2})
     row(threads == 1 ? "marble vase, one sample, 1 thread" : "marble vase, one sample, 2 threads",
         runs, [&] { job.run(source, threads); }, threads == 2 ? "goal: 60" : "");
@@ -158,7 +158,7 @@ void bench_vase(int runs) {
                                            {"direction.Z"}, {"pixelsize.Y"}}};
   Job writer("a = hit\np = point\nn = normal\nd = direction\nw = pixelsize\n", surface_names(1));
   writer.shader->begin_frame({writer.state()}, scene, lens);
-  writer.run(std::make_shared<SurfaceSource>(writer.whole->module(), scene, lens), 2);
+  writer.run(std::make_shared<SurfaceSource>(writer.whole->module(), scene, lens, false), 2);
   auto picture = std::make_shared<image::Image>(spec);
   for (std::size_t i = 0; i < spec.channels.size(); ++i) picture->planes[i] = writer.planes[i];
   const std::vector<image::Layer> layers = image::layers_of(spec);

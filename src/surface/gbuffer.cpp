@@ -175,6 +175,13 @@ GBuffer::GBuffer(const ir::Module& module, const SurfaceLayers& layers,
           plane < 0 ? nullptr : picture_->planes[static_cast<std::size_t>(plane)].data());
     }
   }
+  for (std::size_t c = 0; c < 3; ++c) {
+    point_[c] = plane_of("point", c), place_[c] = plane_of("place", c);
+    normal_[c] = plane_of("normal", c);
+  }
+  hit_ = plane_of("hit", 0), id_ = plane_of("id", 0), depth_ = plane_of("depth", 0);
+  pixelsize_ = plane_of("pixelsize", 0);
+
   using enum What;
   for (std::size_t i = 0; i < module.inputs.size(); ++i) {
     if (module.inputs[i].rate != ir::Rate::sample) continue;
@@ -225,37 +232,36 @@ const float* GBuffer::plane_of(const std::string& name, std::size_t component) c
   return found->second[component];
 }
 
-Vec3 GBuffer::vector_at(const std::string& name, std::size_t pixel) const {
+Vec3 GBuffer::vector_at(const Planes3& planes, std::size_t pixel) {
   const auto at = [&](std::size_t c) -> double {
-    const float* plane = plane_of(name, c);
-    return plane == nullptr ? 0 : plane[pixel];
+    return planes[c] == nullptr ? 0 : planes[c][pixel];
   };
   return {at(0), at(1), at(2)};
 }
 
 bool GBuffer::seen_at(std::size_t pixel) const {
-  if (const float* hit = plane_of("hit", 0)) return hit[pixel] > 0;
-  if (const float* id = plane_of("id", 0)) return id[pixel] > 0;
-  if (const float* depth = plane_of("depth", 0)) return depth[pixel] < 1e9f;
-  const Vec3 n = vector_at("normal", pixel);
+  if (hit_ != nullptr) return hit_[pixel] > 0;
+  if (id_ != nullptr) return id_[pixel] > 0;
+  if (depth_ != nullptr) return depth_[pixel] < 1e9f;
+  const Vec3 n = vector_at(normal_, pixel);
   return dot(n, n) > 0;
 }
 
 Vec3 GBuffer::direction_at(std::size_t pixel) const {
-  return normalized(vector_at("place", pixel) - frame_.eye.value_or(Vec3{}));
+  return normalized(vector_at(place_, pixel) - frame_.eye.value_or(Vec3{}));
 }
 
 // From the nearer of both neighbours along each axis: across an edge the other one lies far away.
 double GBuffer::pixelsize_at(std::size_t pixel) const {
   const auto width = static_cast<std::size_t>(data_.width());
   const std::size_t column = pixel % width;
-  const Vec3 p = vector_at("point", pixel);
+  const Vec3 p = vector_at(point_, pixel);
   const auto nearer = [&](bool has_before, bool has_after, std::size_t stride) {
     Vec3 best;
     double least = Box::inf;
-    if (has_before) best = p - vector_at("point", pixel - stride), least = dot(best, best);
+    if (has_before) best = p - vector_at(point_, pixel - stride), least = dot(best, best);
     if (has_after) {
-      const Vec3 step = vector_at("point", pixel + stride) - p;
+      const Vec3 step = vector_at(point_, pixel + stride) - p;
       if (dot(step, step) < least) best = step;
     }
     return best;
@@ -275,18 +281,17 @@ float GBuffer::value(const Wanted& wanted, std::size_t pixel) const {
     case What::layer: return wanted.plane[pixel];
     case What::negated: return -wanted.plane[pixel];
     case What::id: {
-      const float* id = plane_of("id", 0);
       const bool seen = seen_at(pixel);
-      return !seen ? 0 : id != nullptr && id[pixel] >= 1 ? id[pixel] : 1;
+      return !seen ? 0 : id_ != nullptr && id_[pixel] >= 1 ? id_[pixel] : 1;
     }
     case What::hit: return seen_at(pixel) ? 1.0f : 0.0f;
-    case What::depth: return static_cast<float>(length(vector_at("place", pixel) - frame_.eye.value_or(Vec3{})));
+    case What::depth: return static_cast<float>(length(vector_at(place_, pixel) - frame_.eye.value_or(Vec3{})));
     case What::direction: return part(direction_at(pixel));
     case What::view: return part(-direction_at(pixel));
     case What::pixelsize: return static_cast<float>(pixelsize_at(pixel));
     case What::pixel_freq: {
-      const float* size = plane_of("pixelsize", 0);
-      const float width = size != nullptr ? size[pixel] : static_cast<float>(pixelsize_at(pixel));
+      const float width =
+          pixelsize_ != nullptr ? pixelsize_[pixel] : static_cast<float>(pixelsize_at(pixel));
       return static_cast<float>(0.5 / width);
     }
     case What::nothing: return 0;
@@ -294,8 +299,15 @@ float GBuffer::value(const Wanted& wanted, std::size_t pixel) const {
                                          : wanted.what == What::light_color    ? LightPart::color
                                          : wanted.what == What::light_position ? LightPart::position
                                                                                : LightPart::radius,
-                             vector_at("place", pixel)));
+                             vector_at(place_, pixel)));
   }
+}
+
+// What a light far away is does not depend on the place, but for where it is said to stand.
+bool GBuffer::is_same_everywhere(const Wanted& wanted) const {
+  const bool of_light = wanted.what == What::light_direction || wanted.what == What::light_color ||
+                        wanted.what == What::light_radius;
+  return of_light && !frame_.lights[wanted.light].is_lamp;
 }
 
 void GBuffer::fill(std::span<const double> x, std::span<const double> y,
@@ -310,6 +322,16 @@ void GBuffer::fill(std::span<const double> x, std::span<const double> y,
   for (const Wanted& wanted : wanted_) {
     float* out = planes[wanted.input];
     if (out == nullptr) continue;
+    if (wanted.what == What::layer || wanted.what == What::negated) {
+      const float sign = wanted.what == What::negated ? -1.0f : 1.0f;
+      for (std::size_t i = 0; i < places.size(); ++i)
+        out[i] = places[i] < 0 ? 0 : sign * wanted.plane[places[i]];
+      continue;
+    }
+    if (is_same_everywhere(wanted)) {
+      std::fill_n(out, places.size(), value(wanted, 0));
+      continue;
+    }
     for (std::size_t i = 0; i < places.size(); ++i)
       out[i] = places[i] < 0 ? 0 : value(wanted, static_cast<std::size_t>(places[i]));
   }

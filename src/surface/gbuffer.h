@@ -3,6 +3,7 @@
 // (1985: "input images", point and normal among their names).
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "image/layers.h"
@@ -59,15 +60,20 @@ class GBuffer : public SampleSource {
     std::size_t light;
     const float* plane;
   };
+  // The planes of one name, null where they are not there.
+  using Planes3 = std::array<const float*, 3>;
   const float* plane_of(const std::string& name, std::size_t component) const;
-  Vec3 vector_at(const std::string& name, std::size_t pixel) const;
+  static Vec3 vector_at(const Planes3& planes, std::size_t pixel);
   Vec3 direction_at(std::size_t pixel) const;
   bool seen_at(std::size_t pixel) const;
   double pixelsize_at(std::size_t pixel) const;
+  bool is_same_everywhere(const Wanted& wanted) const;
   float value(const Wanted& wanted, std::size_t pixel) const;
 
   std::shared_ptr<const image::Image> picture_;
   std::map<std::string, std::vector<const float*>> planes_;
+  Planes3 point_{}, place_{}, normal_{};
+  const float *hit_ = nullptr, *id_ = nullptr, *depth_ = nullptr, *pixelsize_ = nullptr;
   GBufferFrame frame_;
   std::vector<Wanted> wanted_;
   image::Window display_, data_;

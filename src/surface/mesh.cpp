@@ -36,26 +36,41 @@ class MeshShape : public Shape {
   Box bounds() const override { return bounds_; }
 
   void intersect(std::span<const Ray> rays, std::span<ShapeHit> hits) const override {
+    constexpr std::size_t many = 64;  // so many rays come from neighbouring pixels
     std::vector<TriangleHit> found(rays.size());
-    tree_->first(rays, found);
-    for (std::size_t i = 0; i < rays.size(); ++i)
-      if (found[i].triangle != TriangleHit::no_triangle) fill(rays[i], found[i].triangle, hits[i]);
+    const bool together = rays.size() >= many;
+    if (together)
+      tree_->first_together(rays, found);
+    else
+      tree_->first(rays, found);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (found[i].triangle == TriangleHit::no_triangle) continue;
+      if (fill(rays[i], found[i].triangle, hits[i]) || !together) continue;
+      // Near an edge: the triangle that the ray meets when it is alone.
+      hits[i] = {}, found[i] = {};
+      tree_->first(rays.subspan(i, 1), std::span(&found[i], 1));
+      if (found[i].triangle != TriangleHit::no_triangle)
+        fill(rays[i], found[i].triangle, hits[i]);
+    }
   }
 
  private:
-  void fill(const Ray& ray, std::uint32_t triangle, ShapeHit& hit) const {
+  // Whether the place lies well within the triangle.
+  bool fill(const Ray& ray, std::uint32_t triangle, ShapeHit& hit) const {
     const std::uint32_t* corner = &mesh_->triangles[3 * std::size_t{triangle}];
     const Vec3 a = mesh_->position(corner[0]), ab = mesh_->position(corner[1]) - a,
                ac = mesh_->position(corner[2]) - a;
     const Vec3 flat = cross(ab, ac), from = ray.origin - a;
     const double along = dot(flat, ray.direction);
-    if (along == 0) return;
+    if (along == 0) return false;
     const double t = -dot(flat, from) / along;
-    if (!(t > ray.begin && t < ray.end)) return;
+    if (!(t > ray.begin && t < ray.end)) return false;
     // Where in the triangle; on its edge where rounding went beyond.
     const Vec3 q = cross(from, ray.direction);
-    double v = std::clamp(-dot(ac, q) / along, 0.0, 1.0);
-    double w = std::clamp(dot(ab, q) / along, 0.0, 1.0);
+    double v = -dot(ac, q) / along, w = dot(ab, q) / along;
+    constexpr double edge = 1e-4;
+    const bool within = v > edge && w > edge && 1 - v - w > edge;
+    v = std::clamp(v, 0.0, 1.0), w = std::clamp(w, 0.0, 1.0);
     if (v + w > 1) v /= v + w, w = 1 - v;
     const double u = 1 - v - w;
     hit.t = t;
@@ -72,6 +87,7 @@ class MeshShape : public Shape {
       if (dot(hit.normal, flat) < 0) hit.flat = -flat;
     }
     if (!mesh_->uvs.empty()) hit.u = mixed(mesh_->uvs, 2, 0), hit.v = mixed(mesh_->uvs, 2, 1);
+    return within;
   }
 
   std::shared_ptr<const Mesh> mesh_;

@@ -57,8 +57,12 @@ struct TriangleHit {
 class TriangleTree {
  public:
   virtual ~TriangleTree() = default;
-  // The triangle that each ray meets first, as far as single precision tells.
+  // The triangle that each ray meets first, as far as single precision tells. It depends on the ray
+  // alone.
   virtual void first(std::span<const Ray> rays, std::span<TriangleHit> hits) const = 0;
+  // The same for rays that lie side by side, several at once; where a ray passes an edge within
+  // rounding, the triangle may be either.
+  virtual void first_together(std::span<const Ray> rays, std::span<TriangleHit> hits) const = 0;
 };
 class MeshTools {
  public:

@@ -1,5 +1,6 @@
 // The surface of revolution: a spline through profile points, turned about Y. Each piece of the
 // spline makes a polynomial of degree 6 with a ray, in the spline's own parameter.
+#include <algorithm>
 #include <numbers>
 
 #include "surface/roots.h"
@@ -31,9 +32,45 @@ Span1 range(const Cubic& c) {
   return r;
 }
 
+using Sextic = std::array<double, 7>;
+
+// A polynomial of degree 6 as powers and in Bernstein form.
+struct Both {
+  Sextic powers{}, bernstein{};
+  explicit Both(const Sextic& p = {}) : powers(p) { to_bernstein(powers.data(), 6, bernstein.data()); }
+};
+
 struct Piece {
   Cubic radius, height;
   Span1 radii, heights;
+  Both h, hh, rr;  // height, its square, and that of the radius
+
+  void finish() {
+    radii = range(radius), heights = range(height);
+    Sextic first{}, square{}, round{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      first[i] = height[i];
+      for (std::size_t j = 0; j < 4; ++j)
+        square[i + j] += height[i] * height[j], round[i + j] += radius[i] * radius[j];
+    }
+    h = Both(first), hh = Both(square), rr = Both(round);
+  }
+};
+
+// What all pieces ask of a ray.
+struct Slanted {
+  double begin, end;        // the part of it inside the bounds
+  double oo, od, dd;        // o.o, o.d and d.d of what is seen from above
+  double per_height;        // 1 / d.y
+  double middle;            // where it is nearest to the axis
+
+  Slanted(const Ray& ray, const Span1& span) : begin(span.begin), end(span.end) {
+    const Vec3 &o = ray.origin, &d = ray.direction;
+    oo = o.x * o.x + o.z * o.z, od = o.x * d.x + o.z * d.z, dd = d.x * d.x + d.z * d.z;
+    per_height = 1 / d.y;
+    middle = dd > 0 ? -od / dd : 0;
+  }
+  double squared(double t) const { return oo + t * (2 * od + t * dd); }
 };
 
 class Revolution : public SingleShape {
@@ -53,7 +90,7 @@ class Revolution : public SingleShape {
       Piece made;
       made.radius = piece(p[i].radius, p[i + 1].radius, p[i + 2].radius, p[i + 3].radius);
       made.height = piece(p[i].height, p[i + 1].height, p[i + 2].height, p[i + 3].height);
-      made.radii = range(made.radius), made.heights = range(made.height);
+      made.finish();
       pieces_.push_back(made);
     }
     if (caps) {
@@ -78,7 +115,7 @@ class Revolution : public SingleShape {
     Piece disc;
     disc.radius = {from.radius, to.radius - from.radius, 0, 0};
     disc.height = {from.height, 0, 0, 0};
-    disc.radii = range(disc.radius), disc.heights = range(disc.height);
+    disc.finish();
     pieces_.insert(front ? pieces_.begin() : pieces_.end(), disc);
   }
 
@@ -88,14 +125,15 @@ class Revolution : public SingleShape {
     if (!(span.begin <= span.end)) return;
     Meeting nearest;
     nearest.t = ray.end;
+    const Slanted seen(ray, span);
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      if (!may_meet(ray, span, pieces_[i])) continue;
+      if (!may_meet(ray, seen, nearest.t, pieces_[i])) continue;
       if (pieces_[i].heights.begin == pieces_[i].heights.end)
         meet_disc(ray, i, nearest);
       else if (std::abs(ray.direction.y) < 1e-4 * length(ray.direction))
         meet_level(ray, i, nearest);
       else
-        meet_slanted(ray, i, nearest);
+        meet_slanted(ray, seen, i, nearest);
     }
     if (nearest.t < ray.end) fill(ray, nearest, hit);
   }
@@ -113,53 +151,49 @@ class Revolution : public SingleShape {
     return ray;
   }
 
-  // Whether the ray comes through the ring that the piece lies in.
-  static bool may_meet(const Ray& ray, const Span1& span, const Piece& piece) {
-    const double dy = ray.direction.y;
-    double begin = span.begin, end = span.end;
-    if (dy != 0) {
-      const double a = (piece.heights.begin - ray.origin.y) / dy,
-                   b = (piece.heights.end - ray.origin.y) / dy;
+  // Whether the ray comes through the ring that the piece lies in, before `latest`.
+  static bool may_meet(const Ray& ray, const Slanted& seen, double latest, const Piece& piece) {
+    double begin = seen.begin, end = std::min(seen.end, latest);
+    if (ray.direction.y != 0) {
+      const double a = (piece.heights.begin - ray.origin.y) * seen.per_height,
+                   b = (piece.heights.end - ray.origin.y) * seen.per_height;
       begin = std::max(begin, std::min(a, b)), end = std::min(end, std::max(a, b));
     } else if (ray.origin.y < piece.heights.begin || ray.origin.y > piece.heights.end) {
       return false;
     }
-    if (!(begin <= end)) return false;
-    const double ox = ray.origin.x, oz = ray.origin.z, dx = ray.direction.x, dz = ray.direction.z;
-    const double k = dx * dx + dz * dz;
-    const auto squared = [&](double t) {
-      const double x = ox + t * dx, z = oz + t * dz;
-      return x * x + z * z;
-    };
-    const double low = piece.radii.begin, high = std::max(-low, piece.radii.end);
-    const double t = k > 0 ? std::clamp(-(ox * dx + oz * dz) / k, begin, end) : begin;
     constexpr double slack = 1e-9;
-    if (squared(t) > high * high * (1 + slack)) return false;
-    return low <= 0 || std::max(squared(begin), squared(end)) >= low * low * (1 - slack);
+    if (!(begin <= end + slack * std::abs(end))) return false;
+    const double low = piece.radii.begin, high = std::max(-low, piece.radii.end);
+    const double t = begin < end ? std::clamp(seen.middle, begin, end) : begin;
+    const double room = slack * (seen.oo + high * high);
+    if (seen.squared(t) > high * high + room) return false;
+    return low <= 0 ||
+           std::max(seen.squared(begin), seen.squared(end)) >= low * low - room;
   }
 
   static void keep(const Ray& ray, double t, double v, std::size_t piece, Meeting& nearest) {
     if (t > ray.begin && t < nearest.t) nearest = {t, v, piece};
   }
 
-  void meet_slanted(const Ray& ray, std::size_t index, Meeting& nearest) const {
+  void meet_slanted(const Ray& ray, const Slanted& seen, std::size_t index,
+                    Meeting& nearest) const {
     const Piece& piece = pieces_[index];
-    const Vec3 &o = ray.origin, &d = ray.direction;
-    // With w = height - o.y and t = w / d.y: w^2 (dx^2 + dz^2) + 2 w dy (ox dx + oz dz) + dy^2 (ox^2 +
-    // oz^2 - r^2) = 0.
-    Cubic w = piece.height;
-    w[0] -= o.y;
-    const double ww = d.x * d.x + d.z * d.z, w1 = 2 * d.y * (o.x * d.x + o.z * d.z),
-                 yy = d.y * d.y, w0 = yy * (o.x * o.x + o.z * o.z);
-    double c[7] = {w0, 0, 0, 0, 0, 0, 0};
-    for (std::size_t i = 0; i < 4; ++i) {
-      c[i] += w1 * w[i];
-      for (std::size_t j = 0; j < 4; ++j)
-        c[i + j] += ww * w[i] * w[j] - yy * piece.radius[i] * piece.radius[j];
-    }
-    const Roots roots = roots_in_unit(c, 6, false);
+    const double oy = ray.origin.y, dy = ray.direction.y, yy = dy * dy;
+    // With w = height - o.y and t = w / d.y: w^2 d.d + 2 w dy o.d + dy^2 (o.o - r^2) = 0.
+    const double w2 = seen.dd, w1 = 2 * dy * seen.od;
+    const double of_h = w1 - 2 * oy * w2, constant = (oy * w2 - w1) * oy + yy * seen.oo;
+    Sextic bernstein, powers;
+    for (std::size_t i = 0; i < 7; ++i)
+      bernstein[i] = w2 * piece.hh.bernstein[i] + of_h * piece.h.bernstein[i] -
+                     yy * piece.rr.bernstein[i] + constant;
+    if (std::all_of(bernstein.begin(), bernstein.end(), [](double c) { return c > 0; })) return;
+    for (std::size_t i = 0; i < 7; ++i)
+      powers[i] = w2 * piece.hh.powers[i] + of_h * piece.h.powers[i] - yy * piece.rr.powers[i];
+    powers[0] += constant;
+    const Roots roots = roots_in_unit(powers.data(), bernstein.data(), 6);
     for (std::size_t i = 0; i < roots.count; ++i)
-      keep(ray, value(w, roots.at[i]) / d.y, roots.at[i], index, nearest);
+      keep(ray, (value(piece.height, roots.at[i]) - oy) * seen.per_height, roots.at[i], index,
+           nearest);
   }
 
   // Nearly level rays: the circle at the ray's height, then Newton's method in t and v.

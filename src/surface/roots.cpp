@@ -1,6 +1,7 @@
 // Isolation by Bernstein coefficients, then Newton's method held in its bracket.
 #include "surface/roots.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pse::surface {
@@ -79,7 +80,7 @@ struct Search {
 
 }  // namespace
 
-Roots roots_in_unit(const double* coefficients, std::size_t degree, bool first_only) {
+void to_bernstein(const double* coefficients, std::size_t degree, double* bernstein) {
   static const auto ratios = [] {
     std::array<std::array<std::array<double, most_roots + 1>, most_roots + 1>, most_roots + 1> r{};
     for (std::size_t n = 0; n <= most_roots; ++n)
@@ -87,10 +88,24 @@ Roots roots_in_unit(const double* coefficients, std::size_t degree, bool first_o
         for (std::size_t k = 0; k <= i; ++k) r[n][i][k] = binomial(i, k) / binomial(n, k);
     return r;
   }();
+  for (std::size_t i = 0; i <= degree; ++i) {
+    bernstein[i] = 0;
+    for (std::size_t k = 0; k <= i; ++k) bernstein[i] += ratios[degree][i][k] * coefficients[k];
+  }
+}
+
+Roots roots_in_unit(const double* coefficients, std::size_t degree, bool first_only) {
   Coefficients c{};
-  for (std::size_t i = 0; i <= degree; ++i)
-    for (std::size_t k = 0; k <= i; ++k) c[i] += ratios[degree][i][k] * coefficients[k];
+  to_bernstein(coefficients, degree, c.data());
   Search search{coefficients, degree, first_only, {}};
+  search.search(c, 0, 1, 0);
+  return search.found;
+}
+
+Roots roots_in_unit(const double* coefficients, const double* bernstein, std::size_t degree) {
+  Coefficients c{};
+  std::copy_n(bernstein, degree + 1, c.begin());
+  Search search{coefficients, degree, false, {}};
   search.search(c, 0, 1, 0);
   return search.found;
 }

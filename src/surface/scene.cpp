@@ -40,20 +40,48 @@ Scene::Scene(std::vector<Object> objects, std::vector<Light> lights) : lights_(s
   if (bounds_.bounded()) tiny_ = std::max(1e-4 * bounds_.radius(), 1e-12);
 }
 
+namespace {
+
+bool is_usable(const Ray& ray) {
+  const double size = dot(ray.direction, ray.direction);
+  return size > 0 && std::isfinite(size) && is_finite(ray.origin);
+}
+
+}  // namespace
+
 void Scene::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
+  thread_local std::vector<ShapeHit> best;
+  best.assign(rays.size(), {});
+  for (std::size_t i = 0; i < rays.size(); ++i) hits[i].object = -1;
+  // One object that stands where it was made takes the rays as they are.
+  const bool direct = placed_.size() == 1 && placed_.front().identity &&
+                      std::all_of(rays.begin(), rays.end(), is_usable);
+  if (direct) {
+    placed_.front().object.shape->intersect(rays, best);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (best[i].found()) hits[i].object = 0;
+  } else {
+    trace_each(rays, hits, best);
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (hits[i].found())
+      finish(rays[i], placed_[static_cast<std::size_t>(hits[i].object)], best[i], hits[i]);
+    else
+      hits[i] = {};
+}
+
+void Scene::trace_each(std::span<const Ray> rays, std::span<Hit> hits,
+                       std::span<ShapeHit> best) const {
   std::vector<std::uint32_t> which;
   std::vector<Ray> local;
-  std::vector<ShapeHit> found, best(rays.size());
+  std::vector<ShapeHit> found;
   which.reserve(rays.size()), local.reserve(rays.size());
-  for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = {};
-
   for (std::size_t k = 0; k < placed_.size(); ++k) {
     const Placed& placed = placed_[k];
     which.clear(), local.clear();
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Ray& ray = rays[i];
-      const double size = dot(ray.direction, ray.direction);
-      if (!(size > 0) || !std::isfinite(size) || !is_finite(ray.origin)) continue;
+      if (!is_usable(ray)) continue;
       Ray clipped = ray;
       clipped.end = std::min(ray.end, best[i].t);
       const Span1 span = clip(clipped, placed.bounds);
@@ -71,9 +99,6 @@ void Scene::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
       if (found[j].t < best[which[j]].t)
         best[which[j]] = found[j], hits[which[j]].object = static_cast<int>(k);
   }
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if (hits[i].found())
-      finish(rays[i], placed_[static_cast<std::size_t>(hits[i].object)], best[i], hits[i]);
 }
 
 void Scene::finish(const Ray& ray, const Placed& placed, const ShapeHit& found, Hit& hit) const {

@@ -64,6 +64,7 @@ class Scene {
     Box bounds;  // in the world
     bool identity = false;
   };
+  void trace_each(std::span<const Ray> rays, std::span<Hit> hits, std::span<ShapeHit> best) const;
   void finish(const Ray& ray, const Placed& placed, const ShapeHit& found, Hit& hit) const;
 
   std::vector<Placed> placed_;

@@ -26,6 +26,7 @@ class Shader : public Kernel {
   void begin_frame(std::vector<FrameState> states, std::shared_ptr<const Scene> scene,
                    const Lens& lens);
   const Scene* scene() const { return scene_.get(); }
+  bool shades_background() const { return program_of_.front() >= 0; }
 
   int width() const override;
   void run_frame(FrameState& state, RunStatus& status) const override;

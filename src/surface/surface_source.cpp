@@ -130,7 +130,8 @@ Vec3 NameWriter::value(const Sighting& s, const Wanted& wanted) const {
   return {};
 }
 
-void NameWriter::write(std::span<const Sighting> sightings, std::span<float* const> planes) const {
+void NameWriter::write(std::span<const Sighting> sightings, std::span<float* const> planes,
+                       bool misses) const {
   for (std::size_t k = 0; k < wanted_.size(); ++k) {
     const Wanted& wanted = wanted_[k];
     float* out = planes[wanted.input];
@@ -145,7 +146,9 @@ void NameWriter::write(std::span<const Sighting> sightings, std::span<float* con
       ++last;
       outs[static_cast<std::size_t>(wanted_[last].component)] = planes[wanted_[last].input];
     }
+    const bool all = misses || wanted.what == What::id;
     for (std::size_t i = 0; i < sightings.size(); ++i) {
+      if (!all && !sightings[i].hit.found()) continue;
       const Vec3 v = value(sightings[i], wanted);
       if (outs[0] != nullptr) outs[0][i] = static_cast<float>(v.x);
       if (outs[1] != nullptr) outs[1][i] = static_cast<float>(v.y);
@@ -169,21 +172,35 @@ void set_scene_uniforms(const ir::Module& module, std::span<const Light> lights,
 }
 
 SurfaceSource::SurfaceSource(const ir::Module& module, std::shared_ptr<const Scene> scene,
-                             const Lens& lens)
-    : scene_(scene), lens_(lens), names_(module, std::move(scene), lens) {}
+                             const Lens& lens, bool misses)
+    : scene_(scene), lens_(lens), names_(module, std::move(scene), lens), misses_(misses) {}
 
+// A piece at a time, so that rays and hits stay in the cache.
 void SurfaceSource::fill(std::span<const double> x, std::span<const double> y,
                          std::span<float* const> planes) const {
-  std::vector<Ray> rays(x.size());
-  std::vector<Hit> hits(x.size());
+  constexpr std::size_t piece = 512;
+  std::vector<float*> moved(planes.begin(), planes.end());
+  for (std::size_t i = 0; i < x.size(); i += piece) {
+    const std::size_t count = std::min(piece, x.size() - i);
+    for (std::size_t k = 0; k < moved.size(); ++k)
+      moved[k] = planes[k] == nullptr ? nullptr : planes[k] + i;
+    fill_some(x.subspan(i, count), y.subspan(i, count), moved);
+  }
+}
+
+void SurfaceSource::fill_some(std::span<const double> x, std::span<const double> y,
+                              std::span<float* const> planes) const {
+  thread_local std::vector<Ray> rays;
+  thread_local std::vector<Hit> hits;
+  thread_local std::vector<Sighting> sightings;
+  rays.resize(x.size()), hits.resize(x.size()), sightings.clear();
   for (std::size_t i = 0; i < x.size(); ++i) rays[i] = lens_.ray(x[i], y[i]);
   scene_->trace(rays, hits);
-  std::vector<Sighting> sightings(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double t = hits[i].found() ? hits[i].t : 1;
-    sightings[i] = {rays[i], hits[i], lens_.width(rays[i], t), lens_.depth(rays[i], t)};
+    sightings.push_back({rays[i], hits[i], lens_.width(rays[i], t), lens_.depth(rays[i], t)});
   }
-  names_.write(sightings, planes);
+  names_.write(sightings, planes, misses_);
 }
 
 TileSource at_pixel_centres(std::shared_ptr<const SampleSource> source, double sample_x,

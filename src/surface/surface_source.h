@@ -18,8 +18,8 @@ std::vector<StreamName> surface_names(std::size_t lights);
 
 // A ray, what it met, and how wide a pixel is there.
 struct Sighting {
-  Ray ray;
-  Hit hit;
+  const Ray& ray;
+  const Hit& hit;
   double width = 0;  // of a pixel across the ray, metres
   double depth = 0;
 };
@@ -30,7 +30,9 @@ class NameWriter {
   NameWriter(const ir::Module& module, std::shared_ptr<const Scene> scene, const Lens& lens);
 
   // planes[i] receives module input i, for those that are names of surfaces; null: not wanted.
-  void write(std::span<const Sighting> sightings, std::span<float* const> planes) const;
+  // Without `misses`, samples that show nothing get their `id` only.
+  void write(std::span<const Sighting> sightings, std::span<float* const> planes,
+             bool misses) const;
 
  private:
   enum class What {
@@ -59,15 +61,21 @@ void set_scene_uniforms(const ir::Module& module, std::span<const Light> lights,
 
 class SurfaceSource : public SampleSource {
  public:
-  SurfaceSource(const ir::Module& module, std::shared_ptr<const Scene> scene, const Lens& lens);
+  // `misses`: whether what shows nothing is shaded too.
+  SurfaceSource(const ir::Module& module, std::shared_ptr<const Scene> scene, const Lens& lens,
+                bool misses);
   void fill(std::span<const double> x, std::span<const double> y,
             std::span<float* const> planes) const override;
   bool anywhere() const override { return true; }
 
  private:
+  void fill_some(std::span<const double> x, std::span<const double> y,
+                 std::span<float* const> planes) const;
+
   std::shared_ptr<const Scene> scene_;
   Lens lens_;
   NameWriter names_;
+  bool misses_;
 };
 
 // Calls a source for the pixel centres of each tile.

@@ -62,6 +62,41 @@ class Tree : public TriangleTree {
     }
   }
 
+  // Packets of 16.
+  void first_together(std::span<const Ray> rays, std::span<TriangleHit> hits) const override {
+    constexpr std::size_t lanes = 16;
+    for (std::size_t begin = 0; begin < rays.size(); begin += lanes) {
+      const std::size_t count = std::min(lanes, rays.size() - begin);
+      RTCIntersectContext context;
+      rtcInitIntersectContext(&context);
+      context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+      alignas(64) int valid[lanes];
+      alignas(64) RTCRayHit16 query;
+      for (std::size_t k = 0; k < lanes; ++k) {
+        const Ray& ray = rays[begin + std::min(k, count - 1)];
+        valid[k] = k < count ? -1 : 0;
+        query.ray.org_x[k] = static_cast<float>(ray.origin.x);
+        query.ray.org_y[k] = static_cast<float>(ray.origin.y);
+        query.ray.org_z[k] = static_cast<float>(ray.origin.z);
+        query.ray.dir_x[k] = static_cast<float>(ray.direction.x);
+        query.ray.dir_y[k] = static_cast<float>(ray.direction.y);
+        query.ray.dir_z[k] = static_cast<float>(ray.direction.z);
+        query.ray.tnear[k] = static_cast<float>(ray.begin);
+        query.ray.tfar[k] = static_cast<float>(ray.end);
+        query.ray.time[k] = 0;
+        query.ray.mask[k] = 0xffffffff;
+        query.ray.id[k] = 0;
+        query.ray.flags[k] = 0;
+        query.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+        query.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+      }
+      rtcIntersect16(valid, scene_, &context, &query);
+      for (std::size_t k = 0; k < count; ++k)
+        if (query.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID)
+          hits[begin + k].triangle = query.hit.primID[k];
+    }
+  }
+
  private:
   RTCDevice device_;
   RTCScene scene_;

@@ -40,13 +40,22 @@ struct Both {
   explicit Both(const Sextic& p = {}) : powers(p) { to_bernstein(powers.data(), 6, bernstein.data()); }
 };
 
-struct Piece {
-  Cubic radius, height;
+// Where something lies: between two heights and two distances from the axis.
+struct Ring {
   Span1 radii, heights;
-  Both h, hh, rr;  // height, its square, and that of the radius
+};
+
+struct Piece : Ring {
+  Cubic radius, height;
+  Both h, hh, rr;   // height, its square, and that of the radius
+  int rising = 0;   // 1 where the height only grows, -1 where it only falls
 
   void finish() {
     radii = range(radius), heights = range(height);
+    const double derivative[3] = {height[1], 2 * height[2], 3 * height[3]};
+    double b[3];
+    to_bernstein(derivative, 2, b);
+    rising = std::min({b[0], b[1], b[2]}) > 0 ? 1 : std::max({b[0], b[1], b[2]}) < 0 ? -1 : 0;
     Sextic first{}, square{}, round{};
     for (std::size_t i = 0; i < 4; ++i) {
       first[i] = height[i];
@@ -101,6 +110,14 @@ class Revolution : public SingleShape {
       const double r = std::max(std::abs(each.radii.begin), std::abs(each.radii.end));
       bounds_.add(Vec3{-r, each.heights.begin, -r}), bounds_.add(Vec3{r, each.heights.end, r});
     }
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      if (i % group == 0) groups_.push_back(pieces_[i]);
+      const auto join = [](Span1& a, const Span1& b) {
+        a = {std::min(a.begin, b.begin), std::max(a.end, b.end)};
+      };
+      join(groups_.back().radii, pieces_[i].radii);
+      join(groups_.back().heights, pieces_[i].heights);
+    }
   }
   Box bounds() const override { return bounds_; }
 
@@ -127,6 +144,11 @@ class Revolution : public SingleShape {
     nearest.t = ray.end;
     const Slanted seen(ray, span);
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      // Many at once that are not met.
+      if (i % group == 0 && !may_meet(ray, seen, nearest.t, groups_[i / group])) {
+        i += group - 1;
+        continue;
+      }
       if (!may_meet(ray, seen, nearest.t, pieces_[i])) continue;
       if (pieces_[i].heights.begin == pieces_[i].heights.end)
         meet_disc(ray, i, nearest);
@@ -152,7 +174,7 @@ class Revolution : public SingleShape {
   }
 
   // Whether the ray comes through the ring that the piece lies in, before `latest`.
-  static bool may_meet(const Ray& ray, const Slanted& seen, double latest, const Piece& piece) {
+  static bool may_meet(const Ray& ray, const Slanted& seen, double latest, const Ring& piece) {
     double begin = seen.begin, end = std::min(seen.end, latest);
     if (ray.direction.y != 0) {
       const double a = (piece.heights.begin - ray.origin.y) * seen.per_height,
@@ -190,7 +212,12 @@ class Revolution : public SingleShape {
     for (std::size_t i = 0; i < 7; ++i)
       powers[i] = w2 * piece.hh.powers[i] + of_h * piece.h.powers[i] - yy * piece.rr.powers[i];
     powers[0] += constant;
-    const Roots roots = roots_in_unit(powers.data(), bernstein.data(), 6);
+    // A ray from outside wants the root that it comes to first.
+    const bool forward = (piece.rising > 0) == (dy > 0);
+    const Which which = piece.rising == 0 || !(seen.begin > ray.begin) ? Which::all
+                        : forward                                     ? Which::first
+                                                                      : Which::last;
+    const Roots roots = roots_in_unit(powers.data(), bernstein.data(), 6, which);
     for (std::size_t i = 0; i < roots.count; ++i)
       keep(ray, (value(piece.height, roots.at[i]) - oy) * seen.per_height, roots.at[i], index,
            nearest);
@@ -251,7 +278,9 @@ class Revolution : public SingleShape {
     hit.v = (double(meeting.piece) + meeting.v) / double(pieces_.size());
   }
 
+  static constexpr std::size_t group = 4;
   std::vector<Piece> pieces_;
+  std::vector<Ring> groups_;  // of so many pieces each
   Box bounds_;
 };
 

@@ -20,7 +20,8 @@ struct Search {
   const double* power;
   std::size_t degree;
   bool first_only;
-  Roots found;
+  bool from_end = false;
+  Roots found{};
 
   bool full() const { return found.count == most_roots || (first_only && found.count > 0); }
 
@@ -29,21 +30,20 @@ struct Search {
     for (std::size_t i = degree; i-- > 0;) slope = slope * x + value, value = value * x + power[i];
   }
 
-  // One root lies in [a, b]: the values there differ in sign, or one is 0.
-  void refine(double a, double b) {
-    double value, slope, at_a, ignored;
-    value_and_slope(a, at_a, ignored);
-    double x = 0.5 * (a + b);
+  // One root lies in [a, b], where the values are at_a and at_b, of different sign or 0.
+  void refine(double a, double b, double at_a, double at_b, bool above) {
+    double x = a + (b - a) * (at_a != at_b ? std::clamp(at_a / (at_a - at_b), 0.0, 1.0) : 0.5);
     for (int step = 0; step < 60; ++step) {
+      double value, slope;
       value_and_slope(x, value, slope);
       if (value == 0) break;
-      if ((value > 0) == (at_a > 0))
+      if ((value > 0) == above)
         a = x;
       else
         b = x;
       double next = slope != 0 ? x - value / slope : a;
-      if (!(next > a && next < b)) next = 0.5 * (a + b);
-      const bool done = std::abs(next - x) <= 1e-15 * std::abs(x) || next == a || next == b;
+      if (!(next >= a && next <= b)) next = 0.5 * (a + b);
+      const bool done = std::abs(next - x) <= 1e-12 || next == a || next == b;
       x = next;
       if (done) break;
     }
@@ -53,14 +53,15 @@ struct Search {
   void search(const Coefficients& c, double a, double b, int depth) {
     // Count changes of sign; coefficients of 0 have the sign before them.
     int changes = 0;
-    double before = 0;
+    double before = 0, first = 0;
     for (std::size_t i = 0; i <= degree; ++i) {
       if (c[i] == 0) continue;
+      if (first == 0) first = c[i];
       if (before != 0 && (before > 0) != (c[i] > 0)) ++changes;
       before = c[i];
     }
     if (changes == 0 || full()) return;
-    if (changes == 1) return refine(a, b);
+    if (changes == 1) return refine(a, b, c[0], c[degree], first > 0);
     if (depth == deepest) {
       found.at[found.count++] = 0.5 * (a + b);
       return;
@@ -73,8 +74,9 @@ struct Search {
       left[level] = right[0];
     }
     const double middle = 0.5 * (a + b);
-    search(left, a, middle, depth + 1);
-    if (!full()) search(right, middle, b, depth + 1);
+    search(from_end ? right : left, from_end ? middle : a, from_end ? b : middle, depth + 1);
+    if (!full())
+      search(from_end ? left : right, from_end ? a : middle, from_end ? middle : b, depth + 1);
   }
 };
 
@@ -97,15 +99,16 @@ void to_bernstein(const double* coefficients, std::size_t degree, double* bernst
 Roots roots_in_unit(const double* coefficients, std::size_t degree, bool first_only) {
   Coefficients c{};
   to_bernstein(coefficients, degree, c.data());
-  Search search{coefficients, degree, first_only, {}};
+  Search search{coefficients, degree, first_only};
   search.search(c, 0, 1, 0);
   return search.found;
 }
 
-Roots roots_in_unit(const double* coefficients, const double* bernstein, std::size_t degree) {
+Roots roots_in_unit(const double* coefficients, const double* bernstein, std::size_t degree,
+                    Which which) {
   Coefficients c{};
   std::copy_n(bernstein, degree + 1, c.begin());
-  Search search{coefficients, degree, false, {}};
+  Search search{coefficients, degree, which != Which::all, which == Which::last};
   search.search(c, 0, 1, 0);
   return search.found;
 }

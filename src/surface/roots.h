@@ -20,8 +20,11 @@ struct Roots {
 // roots may be given once, twice or not at all. `first_only` stops at the least one.
 Roots roots_in_unit(const double* coefficients, std::size_t degree, bool first_only);
 
-// The same for a polynomial whose Bernstein coefficients are known as well; both of degree + 1.
-Roots roots_in_unit(const double* coefficients, const double* bernstein, std::size_t degree);
+// The same for a polynomial whose Bernstein coefficients are known as well; both of degree + 1. All
+// roots, or only the least or the greatest.
+enum class Which { all, first, last };
+Roots roots_in_unit(const double* coefficients, const double* bernstein, std::size_t degree,
+                    Which which);
 void to_bernstein(const double* coefficients, std::size_t degree, double* bernstein);
 
 }  // namespace pse::surface

@@ -1,6 +1,7 @@
 // Tiles with aprons as batches; each is computed, compared and refined within one batch.
 #include "antialias/antialias.h"
 
+#include <algorithm>
 #include <chrono>
 #include <mutex>
 #include <stdexcept>
@@ -60,7 +61,7 @@ class Execution {
     RunStatus unchecked;
     const Placed quiet(*programs_.quiet, host_, unchecked);
     const bool anywhere = quiet.samples->anywhere();
-    procedural_ = antialias_.mode == Mode::procedural && programs_.has_paths() && anywhere;
+    procedural_ = antialias_.mode == Mode::procedural && programs_.has_paths && anywhere;
     supersample_ = antialias_.mode == Mode::supersample;
     apron_ = !procedural_ ? 0 : antialias_.filter.reach() > 1.01f ? 2 : 1;
 
@@ -75,6 +76,11 @@ class Execution {
       const Rect rect = area(tile);
       source_({rect, size_of(rect), planes});
     };
+    // What tells objects apart, where the program or its source has it.
+    const auto& inputs_of = shown.module().inputs;
+    const auto id = std::ranges::find_if(inputs_of, [](const ir::Input& input) {
+      return input.name == "id" && input.rate == ir::Rate::sample;
+    });
     plan.compute = [&](std::int64_t number, std::span<float* const> inputs,
                        std::span<float* const> outputs, Scratch& scratch, RunStatus& status) {
       if (programs_.quiet != programs_.shown && apron_ > 0) {
@@ -87,7 +93,9 @@ class Execution {
                                   size_of(area(number)));
       }
       if (status.failed_check >= 0 || status.cancel) return;
-      const Tile tile{tiling_.rect(number), area(number), outputs, programs_.outputs};
+      Tile tile{tiling_.rect(number), area(number), outputs, programs_.outputs};
+      if (id != inputs_of.end())
+        tile.ids = inputs[static_cast<std::size_t>(id - inputs_of.begin())];
       if (supersample_) return put(tile, all.supersample(pixels_of(tile.rect), status));
       if (!procedural_) return;
       Counts counts;
@@ -147,11 +155,15 @@ class Execution {
   // The first tile with an edge waits for its program.
   const Refiner& edges() {
     std::call_once(once_, [&] {
-      const auto& program = programs_.edges.get();
-      if (!program) throw std::runtime_error(program.error());
-      RunStatus unchecked;
-      edge_program_.emplace(**program, host_, unchecked);
-      refiner_.emplace(*quiet_->runner, &*edge_program_->runner, antialias_, programs_.outputs);
+      const PlaceRunner* edges = nullptr;
+      if (programs_.edges.valid()) {
+        const auto& program = programs_.edges.get();
+        if (!program) throw std::runtime_error(program.error());
+        RunStatus unchecked;
+        edge_program_.emplace(**program, host_, unchecked);
+        edges = &*edge_program_->runner;
+      }
+      refiner_.emplace(*quiet_->runner, edges, antialias_, programs_.outputs);
     });
     return *refiner_;
   }

@@ -124,8 +124,8 @@ Decisions find_decisions(ir::Module& module) {
   passes::assign_rates(module);
   const Function& main = module.main();
   Decisions found;
-  found.jumps.resize(main.values.size());
-  found.kinks.resize(main.values.size());
+  found.forks.resize(main.values.size());
+  found.bends.resize(main.values.size());
   Slice bends(main);
   // Dither is no edge: what decides by px and py decides anew in each pixel, and a ray marcher with
   // a jittered step does so all along its way.
@@ -135,14 +135,15 @@ Decisions find_decisions(ir::Module& module) {
   };
   for_each(main.body, found, [&](const Instruction& in) {
     const Cut cut = cut_of(in.op);
-    if (cut == Cut::none || cut == Cut::kink || !differs(in)) return;
-    found.jumps[in.result()] = found.any = true;
+    if (cut == Cut::none || in.op == Op::fabs || !differs(in)) return;
+    found.forks[in.result()] = found.any = true;
+    if (cut == Cut::kink) return;
+    found.any_jump = true;
     for (const Value operand : in.operands) bends.need(operand);
   });
   bends.run();
   for_each(main.body, found, [&](const Instruction& in) {
-    if (cut_of(in.op) == Cut::kink && differs(in) && bends[in.result()])
-      found.kinks[in.result()] = true;
+    if (in.op == Op::fabs && differs(in) && bends[in.result()]) found.bends[in.result()] = true;
   });
   return found;
 }

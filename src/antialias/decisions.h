@@ -22,10 +22,11 @@ Cut cut_of(ir::Op op);
 
 // The cuts of the main function that differ from sample to sample, by the value that they give.
 struct Decisions {
-  std::vector<bool> jumps;     // all but kinks
-  std::vector<bool> kinks;     // those that some jump depends on: they bend an edge
+  std::vector<bool> forks;     // jumps, and min and max: a steep clamp is an edge to the eye
+  std::vector<bool> bends;     // abs where some jump depends on it: it bends an edge
   std::vector<bool> dithered;  // what depends on px and py: none of these is an edge
-  bool any = false;            // whether there is a jump
+  bool any = false;            // whether there is a fork
+  bool any_jump = false;
 
   // Whether an if or a loop goes its way by px and py, and with it all that stands inside.
   bool is_dither(const ir::Instruction& in) const {

@@ -182,8 +182,8 @@ class FunctionDeriver {
   // The edges that a decision makes.
   void see_edges(const Emit& emit, const Instruction& in) {
     const Value result = in.result();
-    if (result >= decisions_->jumps.size() ||
-        (!decisions_->jumps[result] && !decisions_->kinks[result]))
+    if (result >= decisions_->forks.size() ||
+        (!decisions_->forks[result] && !decisions_->bends[result]))
       return;
     const Value a = in.operands[0];
     const Cut cut = cut_of(in.op);

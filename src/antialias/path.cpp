@@ -31,8 +31,8 @@ class Paths {
         path = turn(in, path);
         out.push_back(std::move(in));
       } else {
-        const bool jumps = in.results.size() == 1 && in.result() < decisions_.jumps.size() &&
-                           decisions_.jumps[in.result()];
+        const bool jumps = in.results.size() == 1 && in.result() < decisions_.forks.size() &&
+                           decisions_.forks[in.result()];
         out.push_back(std::move(in));
         if (jumps) path = outcome(Emit(function_, out), Instruction(out.back()), path);
       }
@@ -53,8 +53,12 @@ class Paths {
 
   Value outcome(const Emit& emit, const Instruction& in, Value path) {
     const Value factor = emit.integer(next_factor());
-    if (cut_of(in.op) == Cut::compare)
-      return emit(Op::iadd, {path, emit.choose(in.result(), factor, emit.integer(0))});
+    const Cut cut = cut_of(in.op);
+    if (cut == Cut::compare || cut == Cut::kink) {
+      const Value is_first =
+          cut == Cut::compare ? in.result() : emit.less(in.operands[0], in.operands[1]);
+      return emit(Op::iadd, {path, emit.choose(is_first, factor, emit.integer(0))});
+    }
     const Value whole = in.op == Op::f2i ? in.result() : emit(Op::f2i, {in.result()});
     return emit(Op::iadd, {path, emit(Op::imul, {whole, factor})});
   }

@@ -2,6 +2,7 @@
 #include "antialias/places.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "stream/planes.h"
 
@@ -28,6 +29,8 @@ PlaceRunner::PlaceRunner(const Program& program, const FrameState& state,
     slopes_.push_back({i, index, name.back() == 'x'});
     sloping_[index] = true;
   }
+  for (std::size_t i = 0; i < inputs.size() && !slopes_.empty(); ++i)
+    if (used_[i] && inputs[i].name == "id") id_ = i, sloping_[i] = true;
 }
 
 void PlaceRunner::fill(std::span<const double> x, std::span<const double> y,
@@ -53,8 +56,19 @@ void PlaceRunner::fill(std::span<const double> x, std::span<const double> y,
     for (const Slope& slope : slopes_) {
       if (slope.along_x != along_x) continue;
       const float *from = low.pointers()[slope.of], *to = high.pointers()[slope.of];
-      for (std::size_t i = 0; i < x.size(); ++i)
-        planes[slope.input][i] = (to[i] - from[i]) * scale;
+      float* out = planes[slope.input];
+      for (std::size_t i = 0; i < x.size(); ++i) out[i] = (to[i] - from[i]) * scale;
+      if (id_ == no_id) continue;
+      // Only neighbours of the same object count; with none there is no slope.
+      const float *here = planes[slope.of], *id = planes[id_];
+      const float *id_from = low.pointers()[id_], *id_to = high.pointers()[id_];
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        const bool has_from = id_from[i] == id[i], has_to = id_to[i] == id[i];
+        if (has_from && has_to) continue;
+        out[i] = has_to     ? (to[i] - here[i]) * 2 * scale
+                 : has_from ? (here[i] - from[i]) * 2 * scale
+                            : std::numeric_limits<float>::quiet_NaN();
+      }
     }
   }
 }

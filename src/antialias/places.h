@@ -42,6 +42,8 @@ class PlaceRunner {
   std::vector<bool> used_;      // inputs that the source fills, and slopes
   std::vector<bool> sloping_;   // inputs whose slopes are wanted
   std::vector<Slope> slopes_;
+  std::size_t id_ = no_id;  // the input that tells objects apart
+  static constexpr auto no_id = static_cast<std::size_t>(-1);
 };
 
 }  // namespace pse::antialias

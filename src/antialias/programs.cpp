@@ -36,11 +36,16 @@ std::expected<Programs, std::string> compile_programs(CompiledFront front,
   passes::remove_dead(copy.module);
   const Decisions decisions = find_decisions(copy.module);
   if (!decisions.any) return finish(std::move(front));
+  programs.has_paths = true;
   CompiledFront edges = copy;
-  programs.edges = std::async(std::launch::async, [edges = std::move(edges), decisions,
+  // Where nothing jumps there is seldom a visible edge, and it may never be asked for.
+  programs.edges = std::async(decisions.any_jump ? std::launch::async : std::launch::deferred, [edges = std::move(edges), decisions,
                                                    options]() mutable {
                      remove_checks(edges.module);
                      derive_edges(edges.module, decisions);
+                     edges.program.outputs.clear();
+                     for (const ir::Output& output : edges.module.outputs)
+                       edges.program.outputs.push_back({output.name, 1, {}});
                      return compile_back(std::move(edges), {.codegen = options.codegen,
                                                             .interpret = options.interpret,
                                                             .optimize = options.optimize});

@@ -17,7 +17,7 @@ enum class Mode : std::uint8_t {
 struct Options {
   Mode mode = Mode::procedural;
   int samples = 64;  // of a pixel that is supersampled
-  Filter filter;
+  Filter filter = Filter();
 };
 
 struct Programs {
@@ -26,10 +26,11 @@ struct Programs {
   // The same without checks: for samples at places that the user has not asked for.
   std::shared_ptr<const Program> quiet;
   std::size_t outputs = 0;
-  // Its edges (antialias/derive.h), compiled meanwhile; not valid where the program has no jumps.
-  std::shared_future<std::expected<std::shared_ptr<const Program>, std::string>> edges;
-
-  bool has_paths() const { return edges.valid(); }
+  // Its edges (antialias/derive.h), compiled meanwhile; not valid where the program has no jumps:
+  // paths then tell objects apart.
+  using Result = std::expected<std::shared_ptr<const Program>, std::string>;
+  std::shared_future<Result> edges;
+  bool has_paths = false;
 };
 
 // The error is a sentence for the user.

@@ -16,25 +16,45 @@ struct Refiner::Crossing {
   float nx, ny;
   float bend = 0;     // how much the normal turns towards the tangent (-ny, nx) per pixel along it
   float share = 0;    // of the kernel on the normal's side
-  float moment = 0;
+  float towards = 0, away = 0;  // to the middles of the sides, along the normal
 };
 
 namespace {
 
 double centre(int pixel) { return pixel + 0.5; }
 
+// Where no program ran there is no normal, and no line.
 Line line_of(const Results& edges, std::size_t which, std::size_t i) {
-  return {edges[3 * which][i], edges[3 * which + 1][i], edges[3 * which + 2][i]};
+  const Line line{edges[3 * which][i], edges[3 * which + 1][i], edges[3 * which + 2][i]};
+  return line.nx == 0 && line.ny == 0 ? Line{no_edge, 1, 0} : line;
 }
 
 // Where two neighbours differ an edge lies between them, so within this of either.
 constexpr float farthest_explained = 1.7f;
 // How far along the edge, and beyond it, it is looked at again; in reaches of the kernel.
-constexpr float along = 0.7f, beyond = 0.2f;
+constexpr float along = 0.7f, beyond = 0.1f;
 // Edges that turn by more than this from one to the other look are not followed.
 constexpr float most_turn = 0.5f;
 // A share so near to 0 or 1 leaves the pixel as it is.
-constexpr float least_share = 0.002f;
+constexpr float least_share = 0.001f;
+
+// The distance x of a pixel from an edge, from what two places said of it: f / |f'| is `first` at the
+// pixel, and `second` at `out` along the normal and s along the edge, which bends away by a
+// parabola. Along the normal f is x + b x^2, so f / |f'| is x - b x^2; a bend measured off the edge
+// is made that of the edge.
+float true_distance(float first, float second, float out, float& bend, float s) {
+  constexpr float least = 0.15f, most_b = 1;
+  const float measured = bend;
+  float beside = second, x = first;
+  for (int round = 0; round < 3; ++round) {
+    bend = measured / std::max(1 - measured * beside, 0.5f);
+    x = beside - out - bend * s * s / 2;
+    const float b =
+        std::abs(x) < least ? 0 : std::clamp((x - first) / (x * x), -most_b, most_b);
+    beside = second + b * beside * beside;
+  }
+  return x;
+}
 
 }  // namespace
 
@@ -90,14 +110,17 @@ void Refiner::follow(std::vector<Crossing>& crossings, std::vector<Pixel>& uncle
       unclear.push_back(c.pixel);
       continue;
     }
-    // The edge at s is at `there` along the normal; at 0 it has come back by a parabola.
-    const float there = offsets[i] - line.distance / cosine;
     c.bend = turn / s;
-    c.distance -= there + c.bend * s * s / 2;
+    c.distance = true_distance(c.distance, line.distance / cosine, offsets[i] - c.distance,
+                               c.bend, s);
     if (std::abs(c.distance) >= options_.filter.reach(c.nx, c.ny)) continue;
-    c.moment = options_.filter.moment(c.distance, c.nx, c.ny);
-    c.share = options_.filter.share(c.distance, c.nx, c.ny) + c.bend / 2 * c.moment;
-    if (c.share > least_share && c.share < 1 - least_share) crossings[kept++] = c;
+    const float moment = options_.filter.moment(c.distance, c.nx, c.ny);
+    const float straight = options_.filter.share(c.distance, c.nx, c.ny);
+    // The parabola -bend y^2 / 2 for the line, to second order.
+    c.share = straight + c.bend / 2 * moment * (1 - 0.75f * c.bend * c.distance);
+    if (!(c.share > least_share && c.share < 1 - least_share)) continue;
+    c.towards = moment / straight, c.away = -moment / (1 - straight);
+    crossings[kept++] = c;
   }
   crossings.erase(crossings.begin() + static_cast<std::ptrdiff_t>(kept), crossings.end());
 }
@@ -108,8 +131,7 @@ void Refiner::blend(const Tile& tile, const std::vector<Crossing>& crossings, Re
                     std::vector<Pixel>& unclear, RunStatus& status) const {
   Places places;
   for (const Crossing& c : crossings) {
-    const float towards = c.moment / c.share, away = -c.moment / (1 - c.share);
-    for (const float by : {towards, away})
+    for (const float by : {c.towards, c.away})
       places.add(centre(c.pixel.x) + double(by * c.nx), centre(c.pixel.y) + double(by * c.ny));
   }
   const Results sides = program_.run(places, status);
@@ -136,14 +158,20 @@ void Refiner::blend(const Tile& tile, const std::vector<Crossing>& crossings, Re
 
 Refined Refiner::refine(const Tile& tile, RunStatus& status, Counts& counts) const {
   const int around = options_.filter.reach() > 1.01f ? 2 : 1;
-  const std::vector<Pixel> pixels = find_edge_pixels(tile, around);
+  std::vector<Pixel> pixels = find_edge_pixels(tile, around);
   Refined result{{}, Results(outputs_)};
   if (pixels.empty()) return result;
-  std::vector<Pixel> unclear;
-  std::vector<Crossing> crossings = find_crossings(pixels, unclear, status);
-  follow(crossings, unclear, status);
-  blend(tile, crossings, result, unclear, status);
   counts.filtered += static_cast<std::int64_t>(pixels.size());
+  // The program knows the edges within objects, not those of the objects.
+  const auto inner = std::ranges::stable_partition(
+      pixels, [&](const Pixel& pixel) { return pixel.silhouette || edges_ == nullptr; });
+  std::vector<Pixel> unclear(pixels.begin(), inner.begin());
+  pixels.erase(pixels.begin(), inner.begin());
+  if (!pixels.empty()) {
+    std::vector<Crossing> crossings = find_crossings(pixels, unclear, status);
+    follow(crossings, unclear, status);
+    blend(tile, crossings, result, unclear, status);
+  }
   counts.blended += static_cast<std::int64_t>(result.pixels.size());
   counts.supersampled += static_cast<std::int64_t>(unclear.size());
   settle(std::move(unclear), result, status);

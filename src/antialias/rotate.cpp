@@ -39,7 +39,7 @@ class Rotation {
 
  private:
   bool is_jump(Value value) const {
-    return value < decisions_.jumps.size() && decisions_.jumps[value];
+    return value < decisions_.forks.size() && decisions_.forks[value];
   }
 
   bool decides(const Region& region) const {
@@ -65,12 +65,12 @@ class Rotation {
   void enter(const Instruction& in, const passes::Cloner& cloner) {
     for (const Value value : in.results) {
       const Value to = cloner(value);
-      if (to >= decisions_.jumps.size()) {
-        decisions_.jumps.resize(to + 1);
-        decisions_.kinks.resize(to + 1);
+      if (to >= decisions_.forks.size()) {
+        decisions_.forks.resize(to + 1);
+        decisions_.bends.resize(to + 1);
       }
-      decisions_.jumps[to] = value < decisions_.jumps.size() && decisions_.jumps[value];
-      decisions_.kinks[to] = value < decisions_.kinks.size() && decisions_.kinks[value];
+      decisions_.forks[to] = value < decisions_.forks.size() && decisions_.forks[value];
+      decisions_.bends[to] = value < decisions_.bends.size() && decisions_.bends[value];
     }
     for (const Region& region : in.regions)
       for (const Instruction& inner : region.body) enter(inner, cloner);

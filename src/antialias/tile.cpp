@@ -14,9 +14,8 @@ bool is_known(const Rect& area, int x, int y) {
 // Between the pixel and its neighbour (dx, dy): whether some output jumps.
 bool jumps(const Tile& tile, int x, int y, int dx, int dy) {
   const std::size_t here = tile.at(x, y), there = tile.at(x + dx, y + dy);
-  // The neighbour on the other side tells the slope, if it is on the pixel's path.
-  const bool has_slope = is_known(tile.area, x - dx, y - dy) &&
-                         tile.path()[tile.at(x - dx, y - dy)] == tile.path()[here];
+  // The neighbour on the other side tells the slope.
+  const bool has_slope = is_known(tile.area, x - dx, y - dy);
   for (std::size_t o = 0; o < tile.outputs; ++o) {
     const float* value = tile.planes[o];
     if (!differ(value[here], value[there])) continue;
@@ -65,11 +64,14 @@ std::vector<Pixel> find_edge_pixels(const Tile& tile, int reach) {
                tile.path()[tile.at(x, y)] != tile.path()[tile.at(x + dx, y + dy)] &&
                jumps(tile, x, y, dx, dy);
       };
-      bool edge = false;
-      for (int dy = -reach; dy <= reach && !edge; ++dy)
-        for (int dx = -reach; dx <= reach && !edge; ++dx)
-          edge = (dx != 0 || dy != 0) && edge_towards(dx, dy);
-      if (edge) found.push_back({x, y});
+      bool edge = false, silhouette = false;
+      for (int dy = -reach; dy <= reach; ++dy)
+        for (int dx = -reach; dx <= reach; ++dx) {
+          if ((edge && !tile.ids) || silhouette || !edge_towards(dx, dy)) continue;
+          edge = true;
+          silhouette = tile.ids && tile.ids[tile.at(x, y)] != tile.ids[tile.at(x + dx, y + dy)];
+        }
+      if (edge) found.push_back({x, y, silhouette});
     }
   }
   return found;

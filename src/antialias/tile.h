@@ -12,6 +12,7 @@ struct Tile {
   Rect rect, area;
   std::span<float* const> planes;  // the outputs; the path where there is one is the last
   std::size_t outputs = 0;         // without the path
+  const float* ids = nullptr;      // of the objects that the samples show; null: there is but one
 
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(y - area.y0) * static_cast<std::size_t>(area.width()) +
@@ -22,6 +23,7 @@ struct Tile {
 
 struct Pixel {
   int x = 0, y = 0;
+  bool silhouette = false;  // a neighbour shows another object
 };
 
 // Whether two values of an output look different.

@@ -149,9 +149,8 @@ Exit render_command(Session& session) {
     auto front = compile_front(program.sources, file, host, compile_with, diagnostics);
     report(diagnostics, program.sources, session);
     if (!front) return Exit::program;
-    auto made = antialias::compile_programs(std::move(*front), compile_with,
-                                            surfaces ? antialias::Mode::none
-                                                     : options.antialias.mode);
+    auto made =
+        antialias::compile_programs(std::move(*front), compile_with, options.antialias.mode);
     if (!made) throw Failure(Exit::program, made.error());
     // Of several programs each takes the knobs that it has.
     const std::vector<Knob>& own = made->shown->knobs;
@@ -159,17 +158,16 @@ Exit render_command(Session& session) {
         own, requests.size() > 1 ? joined(request.knobs, known(settings, own)) : given,
         session.console);
     textures->load(made->shown->module());
-    parts.push_back({made->shown, std::move(knobs), std::move(textures)});
-    programs = std::move(*made);
+    parts.push_back({std::move(*made), std::move(knobs), std::move(textures)});
   }
   if (!stage.empty()) return Exit::ok;
   const std::vector<Knob> knobs = parts.front().knobs;
+  programs = parts.front().programs;
   const Textures no_textures(session, program.path, options.write.working);
   std::unique_ptr<Textures> own_textures;
   if (surfaces) {
-    const auto whole = surfaces->combine(std::move(parts));
-    programs = antialias::Programs{whole, whole, whole->module().outputs.size(), {}};
-    if (requests.size() > 1) apply_settings(whole->knobs, settings, session.console);
+    programs = surfaces->combine(std::move(parts), options.antialias.mode);
+    if (requests.size() > 1) apply_settings(programs->shown->knobs, settings, session.console);
   } else {
     own_textures = std::move(parts.front().textures);
     if (const std::string problem = needs_a_scene(programs->shown->module()); !problem.empty())

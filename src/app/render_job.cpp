@@ -250,9 +250,6 @@ RunResult RenderJob::compute(const TileSource& source, FrameWriter* writer) {
 // Pixels of images are known at their centres only.
 antialias::Options RenderJob::antialias() const {
   antialias::Options antialias = options_.antialias;
-  // What is procedural looks into the program alone, and surfaces have outlines.
-  if (surfaces_ != nullptr && antialias.mode == antialias::Mode::procedural)
-    antialias.mode = antialias::Mode::none;
   if (surfaces_ != nullptr && surfaces_->is_stored()) antialias.mode = antialias::Mode::none;
   for (const StreamName& name : images_.names())
     if (std::ranges::find(program_->reads, name.name) != program_->reads.end())

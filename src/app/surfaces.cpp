@@ -182,21 +182,58 @@ std::vector<StreamName> Surfaces::names() const {
   return surface::surface_names(scene_.lights.size());
 }
 
-std::shared_ptr<const Program> Surfaces::combine(std::vector<SurfaceProgram> programs) {
+Surfaces::Joined Surfaces::join(const std::vector<std::shared_ptr<const Program>>& of_parts,
+                                bool paths) const {
+  Joined joined;
+  std::vector<int> place(of_parts.size(), -1), program_of;
+  for (std::size_t i = 0; i < of_parts.size(); ++i) {
+    if (!of_parts[i]) continue;
+    place[i] = static_cast<int>(joined.programs.size());
+    joined.programs.push_back(of_parts[i]);
+    joined.parts.push_back(i);
+  }
+  for (const int part : program_of_)
+    program_of.push_back(part < 0 ? -1 : place[static_cast<std::size_t>(part)]);
+  joined.shader = std::make_shared<surface::Shader>(joined.programs, program_of, paths);
+  return joined;
+}
+
+antialias::Programs Surfaces::combine(std::vector<SurfaceProgram> programs,
+                                      antialias::Mode mode) {
   programs_ = std::move(programs);
-  std::vector<std::shared_ptr<const Program>> compiled;
+  using List = std::vector<std::shared_ptr<const Program>>;
+  List shown, quiet, edges;
   for (const SurfaceProgram& part : programs_) {
-    compiled.push_back(part.program);
-    if (const std::string problem = needs_a_scene(part.program->module());
+    if (const std::string problem = needs_a_scene(part.programs.shown->module());
         is_stored() && !problem.empty())
       throw usage_error(problem + ": a traced picture has none", "--on SHAPE or --scene FILE");
+    shown.push_back(part.programs.shown);
+    quiet.push_back(part.programs.quiet);
+    edges.push_back(nullptr);
+    if (!part.programs.edges.valid()) continue;
+    const auto& compiled = part.programs.edges.get();
+    if (!compiled) throw Failure(Exit::program, compiled.error());
+    edges.back() = *compiled;
   }
-  shader_ = std::make_shared<surface::Shader>(std::move(compiled), program_of_);
+  const auto add = [&](const List& list, bool paths) {
+    joined_.push_back(join(list, paths));
+    return surface::Shader::combined(joined_.back().shader);
+  };
+  antialias::Programs all;
+  all.has_paths = mode == antialias::Mode::procedural && !is_stored();
+  all.shown = all.quiet = add(shown, all.has_paths);
+  all.outputs = all.shown->module().outputs.size() - (all.has_paths ? 1 : 0);
   for (const auto what : {surface::TraceCall::What::trace, surface::TraceCall::What::radiance,
                           surface::TraceCall::What::visible})
-    calls_.push_back(
-        std::make_unique<surface::TraceCall>(surface::TraceCall{what, shader_.get()}));
-  return surface::Shader::combined(shader_);
+    calls_.push_back(std::make_unique<surface::TraceCall>(
+        surface::TraceCall{what, joined_.front().shader.get()}));
+  if (quiet != shown) all.quiet = add(quiet, all.has_paths);
+  if (all.has_paths && edges != List(edges.size())) {
+    std::promise<antialias::Programs::Result> made;
+    made.set_value(add(edges, false));
+    all.edges = made.get_future().share();
+  }
+  return all;
 }
 
 // What is not told is chosen so that all objects are seen.
@@ -216,7 +253,8 @@ surface::Camera Surfaces::camera(const ImagePlane& plane, const surface::Scene& 
 void Surfaces::begin_frame(const ImagePlane& plane) {
   if (is_stored()) {
     begin_stored_frame();
-    return shader_->begin_frame(states(plane));
+    for (const Joined& joined : joined_) joined.shader->begin_frame(states(joined, plane));
+    return;
   }
   for (const auto& function : functions_) function->begin_frame(plane);
   // Place the objects.
@@ -229,13 +267,15 @@ void Surfaces::begin_frame(const ImagePlane& plane) {
   const surface::Camera seen = camera(plane, *placed_);
   lens_ = std::make_unique<surface::Lens>(seen, plane.width, plane.height);
   warn_inside(seen);
-  shader_->begin_frame(states(plane), placed_, *lens_);
+  for (const Joined& joined : joined_)
+    joined.shader->begin_frame(states(joined, plane), placed_, *lens_);
 }
 
-std::vector<FrameState> Surfaces::states(const ImagePlane& plane) const {
+std::vector<FrameState> Surfaces::states(const Joined& joined, const ImagePlane& plane) const {
   std::vector<FrameState> states;
-  for (const SurfaceProgram& part : programs_) {
-    const ir::Module& module = part.program->module();
+  for (std::size_t k = 0; k < joined.programs.size(); ++k) {
+    const SurfaceProgram& part = programs_[joined.parts[k]];
+    const ir::Module& module = joined.programs[k]->module();
     FrameState state = plane_state(module, plane, part.knobs);
     surface::set_scene_uniforms(module, is_stored() ? stored_.lights : scene_.lights,
                                 is_stored() ? stored_.eye.value_or(surface::Vec3{}) : lens_->eye(),
@@ -255,7 +295,7 @@ void Surfaces::begin_stored_frame() {
   const auto bare = images_->bare();
   surface::read_gbuffer_attributes(bare->reader.spec().attributes, stored_);
   const std::vector<std::string> layers = surface::layers_wanted(
-      surface::Shader::combined(shader_)->module(), layers_);
+      surface::Shader::combined(joined_.front().shader)->module(), layers_);
   std::vector<std::string> channels;
   for (const std::string& name : layers)
     for (const int channel : image::find_layer(bare->layers, name)->channels)

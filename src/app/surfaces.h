@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "antialias/programs.h"
 #include "app/input_images.h"
 #include "app/knobs.h"
 #include "app/render_options.h"
@@ -23,7 +24,7 @@ struct ProgramRequest {
 };
 
 struct SurfaceProgram {
-  std::shared_ptr<const Program> program;
+  antialias::Programs programs;
   std::vector<Knob> knobs;
   std::unique_ptr<Textures> textures;
 };
@@ -42,7 +43,7 @@ class Surfaces {
   // What programs may read of the scene.
   std::vector<StreamName> names() const;
   // All programs as one, for the executor.
-  std::shared_ptr<const Program> combine(std::vector<SurfaceProgram> programs);
+  antialias::Programs combine(std::vector<SurfaceProgram> programs, antialias::Mode mode);
 
   // Sets the scene up for a frame of this picture.
   void begin_frame(const ImagePlane& plane);
@@ -67,7 +68,6 @@ class Surfaces {
   surface::Camera camera(const ImagePlane& plane, const surface::Scene& scene) const;
   void warn_inside(const surface::Camera& camera);
   void begin_stored_frame();
-  std::vector<FrameState> states(const ImagePlane& plane) const;
 
   Console& console_;
   SceneFile scene_;
@@ -77,7 +77,15 @@ class Surfaces {
   std::vector<ProgramRequest> requests_;
   std::vector<SurfaceProgram> programs_;
   std::vector<std::unique_ptr<surface::TraceCall>> calls_;
-  std::shared_ptr<surface::Shader> shader_;
+  // A program of each part that has one, as one.
+  struct Joined {
+    std::shared_ptr<surface::Shader> shader;
+    std::vector<std::shared_ptr<const Program>> programs;
+    std::vector<std::size_t> parts;
+  };
+  Joined join(const std::vector<std::shared_ptr<const Program>>& of_parts, bool paths) const;
+  std::vector<FrameState> states(const Joined& joined, const ImagePlane& plane) const;
+  std::vector<Joined> joined_;  // the first is what is shown
   std::shared_ptr<const surface::Scene> placed_;  // of the frame
   std::unique_ptr<surface::Lens> lens_;
   std::vector<std::pair<std::string, std::string>> identities_;

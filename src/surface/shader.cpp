@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "antialias/path.h"
 #include "stream/planes.h"
 
 namespace pse::surface {
@@ -25,8 +26,11 @@ std::size_t index_of(std::vector<Entry>& entries, const Entry& entry) {
 
 }  // namespace
 
-Shader::Shader(std::vector<std::shared_ptr<const Program>> programs, std::vector<int> program_of)
-    : program_of_(std::move(program_of)), split_(std::make_shared<passes::SplitModule>()) {
+Shader::Shader(std::vector<std::shared_ptr<const Program>> programs, std::vector<int> program_of,
+               bool paths)
+    : program_of_(std::move(program_of)),
+      split_(std::make_shared<passes::SplitModule>()),
+      has_paths_(paths) {
   for (auto& program : programs) parts_.push_back({std::move(program), {}, {}, false, 0});
   make_module();
 }
@@ -56,6 +60,8 @@ void Shader::make_module() {
     }
   }
   alpha_output_ = first[alpha];
+  path_output_ = module.outputs.size();
+  if (has_paths_) module.outputs.push_back({antialias::path_name});
   split_->first_slot = 0;
 
   // What is read, and where each program finds it.
@@ -78,6 +84,8 @@ void Shader::make_module() {
             part.outputs_of[o].push_back(first[joined] + static_cast<std::size_t>(c));
       }
     }
+    if (has_paths_ && !own.outputs.empty() && own.outputs.back().name == antialias::path_name)
+      part.outputs_of.back().push_back(path_output_);
     part.first_check = static_cast<std::int32_t>(module.checks.size());
     module.checks.insert(module.checks.end(), own.checks.begin(), own.checks.end());
   }
@@ -140,6 +148,12 @@ void Shader::run_samples(const FrameState&, RunStatus& status, Scratch&,
     std::fill_n(outputs[o], count, 0.0f);
   for (std::size_t k = 0; k < parts_.size(); ++k)
     if (!which[k].empty()) run_part(k, status, inputs, outputs, which[k], count);
+  if (!has_paths_) return;
+  float* path = outputs[path_output_];
+  for (std::int64_t i = 0; i < count; ++i) {
+    const auto id = static_cast<std::uint32_t>(ids[i] * 0x9e3779p0f);
+    path[i] = static_cast<float>((static_cast<std::uint32_t>(path[i]) + id) & 0xffffffu);
+  }
 }
 
 void Shader::run_part(std::size_t k, RunStatus& status, const float* const* inputs,

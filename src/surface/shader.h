@@ -13,8 +13,11 @@ namespace pse::surface {
 class Shader : public Kernel {
  public:
   // program_of[id] is an index of `programs` for what has that id, id 0 being the background, or
-  // -1 for nothing. The last is for all greater ids too.
-  Shader(std::vector<std::shared_ptr<const Program>> programs, std::vector<int> program_of);
+  // -1 for nothing. The last is for all greater ids too. With `paths`, one more output "$path"
+  // tells samples apart that show different objects or took different ways through their programs
+  // (antialias/path.h).
+  Shader(std::vector<std::shared_ptr<const Program>> programs, std::vector<int> program_of,
+         bool paths = false);
 
   // The programs as one: it reads what any of them reads at sample rate, and `id`, and sets what
   // any of them sets, and `alpha`: 1 where a program ran that does not set it.
@@ -56,7 +59,8 @@ class Shader : public Kernel {
   std::vector<int> program_of_;
   std::shared_ptr<passes::SplitModule> split_;
   std::vector<ProgramOutput> outputs_;
-  std::size_t id_input_ = 0, alpha_output_ = 0;
+  std::size_t id_input_ = 0, alpha_output_ = 0, path_output_ = 0;
+  bool has_paths_ = false;
   std::array<std::size_t, 3> color_outputs_{};
   bool has_color_ = false;
 

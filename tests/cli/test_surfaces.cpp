@@ -126,7 +126,8 @@ TEST_F(Surfaces, ATracedPictureShadesToTheSameBits) {
   file("p.pse", everything);
   for (const char* shape : {"vase", "torus"}) {
     ASSERT_EQ(pse({"trace", shape, "-o", "g.exr", "--res", "50x40"}).status, 0);
-    const image::Image direct = render({"p.pse", "--on", shape, "--res", "50x40"}, "a.exr"),
+    const image::Image direct = render({"p.pse", "--on", shape, "--res", "50x40", "--antialias", "none"},
+                                       "a.exr"),
                        again = render({"p.pse", "g.exr"}, "b.exr");
     EXPECT_EQ(direct.planes, again.planes) << shape;
   }
@@ -139,9 +140,11 @@ TEST_F(Surfaces, AnotherRenderersPictureIsShaded) {
        "view_layer_depth = depth\nview_layer_indexob = 4 * hit\n");
   file("p.pse", "color = normal * dot(view, normal)\nnumber = id\nw = pixelsize\n");
   const char* const camera = "eye=0.5,1,4 target=0,0,0";
-  render({"other.pse", "--on", "torus", "--res", "64x64", "--camera", camera}, "g.exr");
+  render({"other.pse", "--on", "torus", "--res", "64x64", "--camera", camera, "--antialias", "none"},
+         "g.exr");
   const image::Image direct =
-      render({"p.pse", "--on", "torus", "--res", "64x64", "--camera", camera}, "a.exr");
+      render({"p.pse", "--on", "torus", "--res", "64x64", "--camera", camera, "--antialias", "none"},
+             "a.exr");
   const image::Image stored = render({"p.pse", "g.exr", "--camera", "eye=0.5,1,4"}, "b.exr");
   const image::Image traced = picture("g.exr");
   int seen = 0;
@@ -163,13 +166,18 @@ TEST_F(Surfaces, AnotherRenderersPictureIsShaded) {
 
 TEST_F(Surfaces, SamplesSmoothTheOutline) {
   file("p.pse", "color = white\n");
-  const image::Image one = render({"p.pse", "--on", "sphere", "--res", "32x32"}),
-                     many = render({"p.pse", "--on", "sphere", "--res", "32x32", "--samples", "16"});
+  const auto with = [&](std::vector<std::string> how) {
+    how.insert(how.begin(), {"p.pse", "--on", "sphere", "--res", "32x32"});
+    return render(how);
+  };
+  const image::Image one = with({"--antialias", "none"}), many = with({"--samples", "16"}),
+                     procedural = with({}), truth = with({"--samples", "256"});
   int between = 0;
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 32; ++x) {
       EXPECT_TRUE(at(one, "A", x, y) == 0 || at(one, "A", x, y) == 1);
       between += at(many, "A", x, y) > 0.1 && at(many, "A", x, y) < 0.9 ? 1 : 0;
+      EXPECT_NEAR(at(procedural, "A", x, y), at(truth, "A", x, y), 0.06);
     }
   EXPECT_GT(between, 20);
 }

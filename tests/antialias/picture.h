@@ -1,0 +1,106 @@
+// Small pictures from programs' texts, for tests of antialiasing.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "antialias/antialias.h"
+#include "stream/image_plane.h"
+
+namespace pse::antialias::test {
+
+struct PictureOptions {
+  int width = 32, height = 32;
+  int tile = 64, threads = 1;
+  int vector_width = 0;
+  bool interpret = false;
+  Options antialias;
+  Rect clip{};  // empty: all
+};
+
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<std::string> names;
+  std::vector<std::vector<float>> planes;  // one per output
+  Counts counts;
+  RunResult result;
+  int width_run = 0;
+
+  const std::vector<float>& plane(const std::string& name = "c") const {
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (names[i] == name) return planes[i];
+    ADD_FAILURE() << "no output " << name;
+    return planes.front();
+  }
+  float at(int x, int y, const std::string& name = "c") const {
+    return plane(name)[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                       static_cast<std::size_t>(x)];
+  }
+};
+
+inline CompiledFront lowered(const std::string& text) {
+  CompileOptions options;
+  options.lower.stream = image_plane_names();
+  SourceMap sources;
+  Diagnostics diagnostics;
+  auto front = compile_front(sources, sources.add("test.pse", text), LowerHost{}, options,
+                             diagnostics);
+  if (!front) throw std::runtime_error(print_text(diagnostics, sources, false));
+  return std::move(*front);
+}
+
+inline Picture render(const std::string& text, const PictureOptions& options = {}) {
+  CompileOptions compile;
+  compile.interpret = options.interpret;
+  compile.codegen.width = options.vector_width;
+  const auto programs = compile_programs(lowered(text), compile, options.antialias.mode);
+  if (!programs) throw std::runtime_error(programs.error());
+
+  const ImagePlane plane{.width = options.width, .height = options.height};
+  const Rect window = options.clip.width() > 0 ? options.clip
+                                               : Rect{0, 0, options.width, options.height};
+  Picture picture{.width = window.width(), .height = window.height()};
+  const ir::Module& module = programs->shown->module();
+  for (std::size_t o = 0; o < programs->outputs; ++o) {
+    picture.names.push_back(module.outputs[o].name);
+    picture.planes.emplace_back(
+        static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height), -99.0f);
+  }
+  const auto sink = [&](const TileView& tile) {
+    for (std::size_t o = 0; o < picture.planes.size(); ++o)
+      for (int y = tile.rect.y0; y < tile.rect.y1; ++y)
+        for (int x = tile.rect.x0; x < tile.rect.x1; ++x)
+          picture.planes[o][static_cast<std::size_t>((y - window.y0) * picture.width + x -
+                                                     window.x0)] =
+              tile.planes[o][(y - tile.rect.y0) * tile.rect.width() + x - tile.rect.x0];
+  };
+  const Host host{[&](const Program& program) {
+                    FrameState state;
+                    set_plane_uniforms(program.module(), plane, state);
+                    return state;
+                  },
+                  [&](const ir::Module& of) { return image_plane_samples(of, plane); }};
+  RunStatus status;
+  const TileSource source = image_plane_source(
+      module, plane, {window.x0 - 2, window.y0 - 2, window.x1 + 2, window.y1 + 2});
+  picture.result = execute(*programs, host, options.antialias, source, sink,
+                           {.window = window,
+                            .tile_width = options.tile,
+                            .tile_height = options.tile,
+                            .threads = options.threads,
+                            .ordered_sink = true},
+                           status, picture.counts);
+  return picture;
+}
+
+inline Options plain() { return {.mode = Mode::none}; }
+inline Options samples(int count, FilterKind kind = FilterKind::cubic) {
+  return {.mode = Mode::supersample, .samples = count, .filter = Filter(kind)};
+}
+inline Options procedural(FilterKind kind = FilterKind::cubic) {
+  return {.mode = Mode::procedural, .samples = 64, .filter = Filter(kind)};
+}
+
+}  // namespace pse::antialias::test

@@ -1,0 +1,93 @@
+// Kernels against closed forms, against the reference's numbers, and against themselves: what they
+// say of an edge must be what their own samples say.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "antialias/filter.h"
+#include "antialias/spread.h"
+
+namespace pse::antialias {
+namespace {
+
+using enum FilterKind;
+constexpr FilterKind kinds[] = {cubic, box, disc, cone, paraboloid, gauss};
+
+TEST(Filter, TheChaptersCubicAtItsEndsItsMiddleAndAQuarter) {
+  const Filter filter;
+  EXPECT_EQ(filter.share(-0.5f, 1, 0), 0);
+  EXPECT_EQ(filter.share(0.5f, 1, 0), 1);
+  EXPECT_EQ(filter.share(0, 0.6f, 0.8f), 0.5f);
+  EXPECT_NEAR(filter.share(0.25f, 1, 0), 3 * 0.75 * 0.75 - 2 * 0.75 * 0.75 * 0.75, 1e-6);
+  EXPECT_NEAR(filter.share(-0.1f, 1, 0), 3 * 0.4 * 0.4 - 2 * 0.4 * 0.4 * 0.4, 1e-6);
+  EXPECT_FLOAT_EQ(filter.moment(0, 1, 0), 1.5f / 16);
+  EXPECT_EQ(filter.share(3, 1, 0), 1);
+  EXPECT_EQ(filter.share(-3, 1, 0), 0);
+}
+
+TEST(Filter, ReferenceNumbers) {
+  std::ifstream file(PSE_SOURCE_DIR "/../shared/reference/antialias.json");
+  if (!file) GTEST_SKIP() << "the reference numbers are not here";
+  const auto json = nlohmann::json::parse(file);
+  for (const auto& row : json["half_plane_box"]["rows"]) {
+    const double angle = row["theta_deg"].get<double>() * std::numbers::pi / 180;
+    EXPECT_NEAR(Filter(box).share(row["d"].get<float>(), static_cast<float>(std::cos(angle)),
+                                  static_cast<float>(std::sin(angle))),
+                row["coverage"].get<double>(), 2e-6)
+        << row;
+  }
+  for (const auto& row : json["half_plane_radial_kernels"]["rows"]) {
+    const float d = row["d"].get<float>();
+    EXPECT_NEAR(Filter(gauss).share(d, 1, 0), row["gauss_sigma0.5"].get<double>(), 1e-6);
+    EXPECT_NEAR(Filter(disc).share(d, 1, 0), row["disc_R1"].get<double>(), 2e-6);
+    EXPECT_NEAR(Filter(cone).share(d, 1, 0), row["cone_R1"].get<double>(), 2e-6);
+    EXPECT_NEAR(Filter(paraboloid).share(d, 1, 0), row["paraboloid_R1"].get<double>(), 2e-6);
+  }
+}
+
+TEST(Filter, SharesAndMomentsAreThoseOfItsSamples) {
+  constexpr std::uint32_t count = 1 << 14;
+  for (const FilterKind kind : kinds)
+    for (const float scale : {1.0f, 1.5f}) {
+      const Filter filter(kind, scale);
+      const Spread spread(3, 5);
+      for (const float degrees : {0.0f, 17.0f, 45.0f, 80.0f}) {
+        const float nx = std::cos(degrees * 0.0174533f), ny = std::sin(degrees * 0.0174533f);
+        for (const float d : {-0.4f, -0.1f, 0.0f, 0.2f, 0.45f}) {
+          double inside = 0, moment = 0;
+          for (std::uint32_t i = 0; i < count; ++i) {
+            const auto [u, v] = spread(i);
+            const auto [x, y] = filter.place(u, v);
+            const float along = x * nx + y * ny;
+            if (along > -d) inside += 1, moment += along;
+            ASSERT_LE(std::hypot(x, y), filter.reach() * 1.0001f);
+          }
+          EXPECT_NEAR(filter.share(d, nx, ny), inside / count, 2e-3)
+              << int(kind) << " " << degrees << " " << d;
+          EXPECT_NEAR(filter.moment(d, nx, ny), moment / count, 2e-3)
+              << int(kind) << " " << degrees << " " << d;
+        }
+      }
+    }
+}
+
+TEST(Spread, EveryBoxOfADyadicGridHasOnePoint) {
+  const Spread spread(12, -7);
+  for (const int columns : {1, 2, 4, 8, 16, 32, 64}) {
+    const int rows = 64 / columns;
+    std::vector<int> hits(64);
+    for (std::uint32_t i = 64; i < 128; ++i) {
+      const auto [u, v] = spread(i);
+      ++hits[static_cast<std::size_t>(static_cast<int>(u * static_cast<float>(columns)) * rows +
+                                      static_cast<int>(v * static_cast<float>(rows)))];
+    }
+    EXPECT_EQ(hits, std::vector<int>(64, 1)) << columns;
+  }
+  EXPECT_NE(Spread(1, 2)(0), Spread(2, 1)(0));
+}
+
+}  // namespace
+}  // namespace pse::antialias

@@ -1,0 +1,200 @@
+// Pictures with clean edges: against the exact response of the kernel, against many samples, and
+// against themselves computed in other pieces.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "picture.h"
+
+namespace pse::antialias::test {
+namespace {
+
+using enum FilterKind;
+constexpr double one_step = 1.0 / 255;
+
+// Pixels as numbers that are no pixel numbers: px and py stand for dither.
+std::string axes(int size) {
+  return "_x = u * " + std::to_string(size) + "\n_y = (1 - v) * " + std::to_string(size) + "\n";
+}
+
+std::string text(double value) { return "(" + std::to_string(value) + ")"; }
+
+// Worst difference from the exact share of a half-plane at many angles and distances.
+double worst_half_plane(FilterKind kind, const Options& options) {
+  double worst = 0;
+  for (int step = 0; step < 24; ++step) {
+    const double angle = (step * 15 + 3.7) * std::numbers::pi / 180;
+    const double nx = std::cos(angle), ny = std::sin(angle), out = 12.3 + 0.037 * step;
+    const Picture picture =
+        render(axes(24) + "c = select((_x - 12) * " + text(nx) + " + (_y - 12) * " + text(ny) + " > " +
+                   text(out - 12) + ", 1, 0)\n",
+               {.width = 24, .height = 24, .interpret = true, .antialias = options});
+    for (int y = 0; y < 24; ++y)
+      for (int x = 0; x < 24; ++x) {
+        const double d = (x + 0.5 - 12) * nx + (y + 0.5 - 12) * ny - (out - 12);
+        const double exact = Filter(kind).share(static_cast<float>(d), static_cast<float>(nx),
+                                                static_cast<float>(ny));
+        worst = std::max(worst, std::abs(picture.at(x, y) - exact));
+      }
+  }
+  return worst;
+}
+
+TEST(Pictures, HalfPlanesAtEveryAngleAreExact) {
+  for (const FilterKind kind : {cubic, box, disc, cone, paraboloid, gauss})
+    EXPECT_LT(worst_half_plane(kind, procedural(kind)), one_step / 2) << int(kind);
+  EXPECT_GT(worst_half_plane(cubic, plain()), 0.4);  // what the test would find
+}
+
+// The share of the chapter's kernel inside a disc, by rings around the pixel's centre: a ring of
+// radius r at distance a from the disc's centre has the angle 2 acos(..) inside.
+double share_of_disc(double a, double radius) {
+  constexpr int rings = 4000;
+  double share = 0;
+  for (int i = 0; i < rings; ++i) {
+    // Rings of equal weight.
+    const double u = (i + 0.5) / rings;
+    const double r = 0.5 * std::sqrt(1 - std::pow(1 - u, 2.0 / 3));
+    double inside = 0;
+    if (a + r <= radius)
+      inside = 1;
+    else if (std::abs(a - r) < radius)
+      inside = std::acos(std::clamp((a * a + r * r - radius * radius) / (2 * a * r), -1.0, 1.0)) /
+               std::numbers::pi;
+    share += inside / rings;
+  }
+  return share;
+}
+
+TEST(Pictures, DiscsFromLargeToSmallAreExact) {
+  for (const double radius : {11.3, 7.0, 5.2, 3.7, 2.6, 2.0, 1.6, 1.3}) {
+    for (const double shift : {0.0, 0.31}) {
+      const double cx = 16 + shift, cy = 16 - shift / 2;
+      const Picture picture =
+          render(axes(32) + "c = select((_x - " + text(cx) + ") ^ 2 + (_y - " + text(cy) + ") ^ 2 < " +
+                     text(radius * radius) + ", 1, 0)\n",
+                 {.interpret = true, .antialias = procedural()});
+      double worst = 0;
+      for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 32; ++x) {
+          const double exact = share_of_disc(std::hypot(x + 0.5 - cx, y + 0.5 - cy), radius);
+          worst = std::max(worst, std::abs(picture.at(x, y) - exact));
+        }
+      EXPECT_LT(worst, radius > 1.5 ? one_step : 2 * one_step) << radius;
+      EXPECT_GT(picture.counts.blended, 0);
+    }
+  }
+}
+
+// Programs whose edges nest, bend, meet, come from loops, returns, whole numbers.
+const std::vector<std::pair<const char*, const char*>> programs = {
+    {"nested", "f = (u - .5) ^ 2 + (v - .5) ^ 2 - .3 ^ 2\nif f > 0\n    c = Noise(8 * u, 8 * v)\n"
+               "else\n    if sin(20 * u + Noise(u, v) / 10) * sin(20 * v + Noise(u, v) / 10) > 0\n"
+               "        c = .5 + Noise(3 * u, v)\n    else\n        c = 0.1\n"},
+    {"checker", "z = 1 / (1.3 - y)\na = floor(6 * x * z) + floor(6 * z)\nc = mod(a, 2)\n"},
+    {"returns", "function f(p)\n    if p.x * p.y > 0.1\n        return 1\n    if length(p) < 0.4\n"
+                "        return 0.5\n    return 0.2 * p.x\nc = f([x y])\n"},
+    {"loop", "c = 0\nfor i in [1 .. 6]\n    if length([x - i / 4 + 0.8 y]) < 0.3\n        c += "
+             "0.17\n"},
+    {"while", "n = 0\nr = length([x y]) + 0.2\nwhile r < 1\n    r *= 1.4\n    n += 1\nc = n / 5\n"},
+    {"kinks", "d = max(abs(x) - 0.6, abs(y) - 0.4)\nc = saturate(1 - 300 * d)\n"},
+    {"corners", "d = max(abs(x + y / 3) - 0.6, abs(y) - 0.4)\nc = select(d < 0, 1, 0)\n"},
+    {"table", "t = [0.1 0.9 0.3 0.7]\nc = t[1 + floor(3.99 * u)]\n"},
+    {"array", "a = array(4)\nfor i in [1 .. 4]\n    a[i] = length([x - i / 3 + 0.8 y - 0.1])\nc = 0\n"
+              "for d in a\n    if d < 0.25\n        c += 0.3\n"},
+    {"noise", "c = 0.2\nif Noise(3 * x, 3 * y) > 0.1 and x + y < 0.8\n    c = 1\n"},
+    {"pow", "c = select(pow(abs(x), 2.5) + pow(abs(y), 2.5) < 0.5, 1, 0)\n"},
+};
+
+double distance(const Picture& a, const Picture& b) {
+  double sum = 0;
+  const auto &p = a.plane(), &q = b.plane();
+  for (std::size_t i = 0; i < p.size(); ++i) sum += (p[i] - q[i]) * (p[i] - q[i]);
+  return std::sqrt(sum / static_cast<double>(p.size()));
+}
+
+TEST(Pictures, NearerToManySamplesThanSixteen) {
+  for (const auto& [name, program] : programs) {
+    const auto with = [&, program = program](const Options& options) {
+      return render(program, {.width = 64, .height = 64, .antialias = options});
+    };
+    const Picture truth = with(samples(512));
+    const double ours = distance(with(procedural()), truth);
+    EXPECT_LT(ours, distance(with(samples(16)), truth)) << name;
+    EXPECT_LT(ours, 0.25 * distance(with(plain()), truth)) << name;
+  }
+}
+
+TEST(Pictures, TheSameBitsInEveryPiece) {
+  for (const auto& [name, program] : programs) {
+    const auto with = [&, program = program](PictureOptions options) {
+      options.width = 70, options.height = 41;
+      options.antialias = procedural();
+      return render(program, options);
+    };
+    const Picture whole = with({.tile = 512});
+    for (const int tile : {8, 33})
+      EXPECT_EQ(with({.tile = tile, .threads = 2}).planes, whole.planes) << name << tile;
+    for (const int width : {1, 4, 8})
+      EXPECT_EQ(with({.vector_width = width}).planes, whole.planes) << name << width;
+    EXPECT_EQ(with({.interpret = true}).planes, whole.planes) << name;
+    const Picture part = with({.tile = 16, .clip = {11, 7, 40, 30}});
+    for (int y = 7; y < 30; ++y)
+      for (int x = 11; x < 40; ++x) ASSERT_EQ(part.at(x - 11, y - 7), whole.at(x, y)) << name;
+  }
+}
+
+TEST(Pictures, WhatHasNoEdgesIsLeftAlone) {
+  for (const char* program :
+       {"c = Noise(5 * x, 5 * y)\n", "c = turbulence([x y])\n", "c = abs(x) + max(x, 0.1 * x)\n",
+        "_t = 0\n_d = 1\nwhile _d > 0.1\n    _d -= 0.013 + 0.01 * u\n    _t += 0.013 + 0.01 * u\nc = u + "
+        "0 * _t\n",
+        "c = u\nif x < 0\n    c = u + 0 * x\n"}) {
+    const Picture none = render(program, {.antialias = plain()});
+    const Picture ours = render(program, {.antialias = procedural()});
+    EXPECT_EQ(ours.planes, none.planes) << program;
+    EXPECT_EQ(ours.counts.blended + ours.counts.supersampled, 0) << program;
+  }
+}
+
+TEST(Pictures, EdgesAtThePicturesBorderAreSeen) {
+  // The pixel's centre and all its neighbours in the picture are on one side.
+  const Picture picture =
+      render(axes(4) + "c = select(_x < 0.25, 1, 0)\n", {.width = 4, .height = 4, .antialias = procedural()});
+  const float exact = 1 - Filter().share(0.25f, 1, 0);
+  for (int y = 0; y < 4; ++y) EXPECT_NEAR(picture.at(0, y), exact, one_step / 4);
+}
+
+TEST(Pictures, ChecksFailOnlyForPixelsOfThePicture) {
+  // Left of the picture the index would be 0.
+  const std::string program = "t = [0.1 0.9 0.3 0.7]\nc = t[1 + floor(u * width)]\n";
+  EXPECT_EQ(render(program, {.width = 4, .height = 4}).result.end, RunEnd::finished);
+  const RunResult failed = render(program, {.width = 9, .height = 4, .tile = 8}).result;
+  EXPECT_EQ(failed.end, RunEnd::failed);
+  EXPECT_EQ(failed.x, 4);
+  EXPECT_EQ(failed.y, 0);
+}
+
+TEST(Pictures, AValueThatOneSideCannotComputeStaysThere) {
+  // Outside the disc the root is NaN: both sides are run where they belong.
+  const Picture picture = render(
+      "r = length([x y])\nc = 0\nif r < 0.7\n    c = sqrt(0.49 - r * r)\n", {.antialias = procedural()});
+  for (const float value : picture.plane()) EXPECT_FALSE(std::isnan(value));
+}
+
+TEST(Pictures, TheMeanOfASlopeOnEachSide) {
+  // c = x on one side, 2 + x on the other: blending at the sides' middles is exact for slopes.
+  const Picture picture =
+      render(axes(32) + "c = 0.3 * _x\nif _x > 7.8\n    c = 2 + 0.3 * _x\n", {.antialias = procedural()});
+  const double share = Filter().share(-0.3f, 1, 0);
+  EXPECT_NEAR(picture.at(7, 9), 0.3 * 7.5 + 2 * share, 1e-3);
+}
+
+TEST(Pictures, SupersamplingConvergesToTheKernel) {
+  for (const FilterKind kind : {cubic, box, gauss})
+    EXPECT_LT(worst_half_plane(kind, samples(1024, kind)), 0.012) << int(kind);
+}
+
+}  // namespace
+}  // namespace pse::antialias::test

@@ -25,7 +25,7 @@ const std::vector<Known>& known_layers() {
       {"uv", 2, {"uv", "st", "texcoord"}},
       {"id", 1, {"id", "indexob", "objectid", "objectindex"}},
       {"depth", 1, {"depth", "z"}},
-      {"hit", 1, {"hit", "alpha", "a"}},
+      {"hit", 1, {"hit", "alpha"}},
       {"direction", 3, {"direction", "raydirection"}},
       {"backface", 1, {"backface"}},
       {"pixelsize", 1, {"pixelsize"}},

@@ -6,6 +6,7 @@
 
 #include "app/atlas_command.h"
 #include "app/bake_job.h"
+#include "app/bake_mesh.h"
 #include "app/compile_settings.h"
 #include "app/function_program.h"
 #include "app/knobs.h"
@@ -72,6 +73,8 @@ Exit bake_command(Session& session) {
   const OutputRequest& request = common.outputs.front();
   if (!request.file.ends_with(".vdb"))
     throw usage_error(fmt::format("`{}` is no VDB file", request.file), "-o cloud.vdb");
+
+  if (is_mesh_name(common.program)) return bake_mesh(session, options, signals);
 
   // The program, with calls of its functions where it sets nothing itself.
   const std::vector<KnobSetting> settings = knob_settings(session, common.knob_words);

@@ -57,6 +57,7 @@ VolumeOptions bake_options(const Session& session) {
   options.half = !arguments.has("float");
   if (const auto value = arguments.value("band"))
     options.band = static_cast<float>(parse_number(*value, 1, 1000));
+  options.fit = arguments.has("fit");
   options.memory_limit = std::size_t{8192} << 20;
   if (const auto value = arguments.value("memory"))
     options.memory_limit = static_cast<std::size_t>(parse_integer(*value, 1, 1 << 24)) << 20;

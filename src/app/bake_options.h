@@ -13,6 +13,7 @@ struct VolumeOptions {
   bool z_up = false;
   bool half = true;
   float band = 3;  // of distances, in voxels
+  bool fit = false;  // a mesh: centred, its longest side 2
   std::size_t memory_limit = 0;
 };
 

@@ -264,6 +264,7 @@ std::vector<OptionSpec> bake_options() {
        one,
        "N",
        "how far from the surface distances are kept, in voxels; default 3"},
+      {"", "fit", nothing, "", "a mesh: move and scale it so that it is centred, its longest side 2"},
       {"", "memory", one, "MIB", "stop where the grids take more memory; default 8192"},
       shared("seed"),
       shared("fps"),
@@ -339,7 +340,7 @@ const std::vector<CommandSpec>& table() {
         {"pse trace scene.toml -o scene.exr", "a scene"},
         {"pse render marble.pse bunny.exr -o bunny.png", "shade it"}}},
       {"bake",
-       "PROGRAM [MESH] [Name=VALUE...] -o FILE",
+       "PROGRAM|MESH [MESH] [Name=VALUE...] -o FILE",
        "compute a volume, or the texture of a mesh",
        "With a MESH (.obj .ply .gltf .glb) and a picture to write: runs PROGRAM at every texel of the "
        "mesh's texture coordinates, where it reads point, normal and uv as on a visible surface, and "
@@ -351,7 +352,10 @@ const std::vector<CommandSpec>& table() {
        "the functions of these names are called instead: `function density(p)` is enough.\n"
        "\n"
        "Matter is where density is above 0; what is empty takes no room. `temperature` is in "
-       "kelvin. `distance` makes a level set: metres to a surface, negative inside.",
+       "kelvin. `distance` makes a level set: metres to a surface, negative inside.\n"
+       "\n"
+       "A MESH (OBJ, PLY, glTF) becomes the level set of its distances, `--band` voxels far, with "
+       "--res voxels along its longest side.",
        Offer::program,
        bake_options(),
        {{"pse bake marble.pse spot.obj -o albedo.png --res 1024 --samples 4", "a texture"},

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -110,11 +111,12 @@ class Vdb {
                                 std::size_t limit) = 0;
   virtual std::unique_ptr<GridWriter> writer(std::vector<GridSpec> grids,
                                              const GridPlace& place) = 0;
-  // Adds the signed distances of a mesh, within `band` voxels of its surface, to grid 0 of `to`.
-  // `is_signed` false: the mesh has no inside, and distances are taken without sign. `keep_on` is
-  // asked now and then; false stops with an empty result.
-  virtual Result<void> add_mesh(GridWriter& to, const MeshView& mesh, float band, bool is_signed,
-                                bool (*keep_on)(void*), void* user) = 0;
+  // Makes the signed distances of a mesh, within `band` voxels of its surface, grid 0 of `to`.
+  // `inside` tells of voxels whether they are; none: the mesh is closed, and OpenVDB finds out.
+  // `keep_on` is asked now and then; false stops with an unfinished result.
+  virtual Result<void> add_mesh(GridWriter& to, const MeshView& mesh, float band,
+                                const std::function<bool(int, int, int)>& inside,
+                                const std::function<bool()>& keep_on) = 0;
 };
 
 // Opens the module. The error says what is missing.

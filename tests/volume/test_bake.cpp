@@ -226,6 +226,38 @@ TEST_F(Bake, ProgramsWithoutMatterAndErrorsHaveTheirExitStatus) {
   EXPECT_EQ(pse({"bake", "a.pse", "-o", "a.exr"}).status, 2);
 }
 
+// A cube from -1 to 1 with faces of two triangles, outward; `faces` of the six are there.
+std::string cube(int faces) {
+  std::string text;
+  for (const char* v : {"-1 -1 -1", "1 -1 -1", "1 1 -1", "-1 1 -1", "-1 -1 1", "1 -1 1", "1 1 1",
+                        "-1 1 1"})
+    text += std::string("v ") + v + "\n";
+  const char* const sides[] = {"1 4 3 2", "5 6 7 8", "1 5 8 4", "2 3 7 6", "4 8 7 3", "1 2 6 5"};
+  for (int f = 0; f < faces; ++f) text += std::string("f ") + sides[f] + "\n";
+  return text;
+}
+
+TEST_F(Bake, MeshesBecomeDistances) {
+  for (const int faces : {6, 5}) {
+    file("cube.obj", cube(faces));
+    const Ended done =
+        pse({"bake", "cube.obj", "-o", "cube.vdb", "--res", "40", "--band", "6", "--float"});
+    if (contains(done.err, "PSE_SURFACE") || contains(done.err, "was not built"))
+      GTEST_SKIP() << "meshes are not built in";
+    ASSERT_EQ(done.status, 0) << done.err;
+    // Without its lower face the cube is open, and solid all the same.
+    EXPECT_EQ(bool(contains(done.err, "is not closed")), faces == 5) << done.err;
+    const volume::Volume grid(this->grid("distance", "cube.vdb"));
+    EXPECT_NEAR(at(grid, 0.9f, 0, 0), -0.1f, 1e-3f);
+    EXPECT_NEAR(at(grid, 1.1f, 0, 0), 0.1f, 1e-3f);
+    EXPECT_NEAR(at(grid, 0.3f, 0.85f, 0.2f), -0.15f, 1e-3f);
+    EXPECT_NEAR(at(grid, 1.1f, 1.1f, 0), 0.1f * std::sqrt(2.0f), 6e-3f);
+    EXPECT_NEAR(at(grid, 0, 0, 0), -0.3f, 1e-3f);  // the band's end, and the inside's sign
+    EXPECT_NEAR(at(grid, 2, 2, 2), 0.3f, 1e-3f);
+    EXPECT_EQ(info("cube.vdb").grids.front().kind, volume::GridKind::level_set);
+  }
+}
+
 TEST_F(Bake, AnOldFileStaysUntilTheNewOneIsWhole) {
   bake("density = 1\n", {"--res", "8"});
   const std::string old = read("a.vdb");

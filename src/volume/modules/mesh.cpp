@@ -25,23 +25,28 @@ class Adapter {
 };
 
 struct Interrupter {
-  bool (*keep_on)(void*);
-  void* user;
+  const std::function<bool()>& keep_on;
   void start(const char* = nullptr) {}
   void end() {}
-  bool wasInterrupted(int = -1) { return keep_on != nullptr && !keep_on(user); }
+  bool wasInterrupted(int = -1) { return keep_on && !keep_on(); }
 };
 
 }  // namespace
 
-Result<void> add_mesh_to(GridWriter& to, const MeshView& mesh, float band, bool is_signed,
-                         bool (*keep_on)(void*), void* user) {
+Result<void> add_mesh_to(GridWriter& to, const MeshView& mesh, float band,
+                         const std::function<bool(int, int, int)>& inside,
+                         const std::function<bool()>& keep_on) {
   try {
     openvdb::FloatGrid& grid = float_grid_of(to, 0);
-    Interrupter interrupter{keep_on, user};
+    Interrupter interrupter{keep_on};
     const auto made = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
         interrupter, Adapter(mesh, grid.transform()), grid.transform(), band, band,
-        is_signed ? 0 : openvdb::tools::UNSIGNED_DISTANCE_FIELD);
+        inside ? openvdb::tools::UNSIGNED_DISTANCE_FIELD : 0);
+    if (inside)
+      for (auto voxel = made->beginValueOn(); voxel; ++voxel) {
+        const openvdb::Coord at = voxel.getCoord();
+        if (inside(at.x(), at.y(), at.z())) voxel.setValue(-*voxel);
+      }
     grid.setTree(made->treePtr());
     return {};
   } catch (const std::bad_alloc&) {

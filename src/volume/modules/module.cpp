@@ -17,9 +17,10 @@ class Library : public Vdb {
                                      const GridPlace& place) override {
     return make_writer(std::move(grids), place);
   }
-  Result<void> add_mesh(GridWriter& to, const MeshView& mesh, float band, bool is_signed,
-                        bool (*keep_on)(void*), void* user) override {
-    return add_mesh_to(to, mesh, band, is_signed, keep_on, user);
+  Result<void> add_mesh(GridWriter& to, const MeshView& mesh, float band,
+                        const std::function<bool(int, int, int)>& inside,
+                        const std::function<bool()>& keep_on) override {
+    return add_mesh_to(to, mesh, band, inside, keep_on);
   }
 };
 

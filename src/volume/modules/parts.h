@@ -13,8 +13,9 @@ namespace pse::volume {
 Result<FileInfo> read_info(const std::string& file);
 Result<GridData> read_grid(const std::string& file, const std::string& name, std::size_t limit);
 std::unique_ptr<GridWriter> make_writer(std::vector<GridSpec> grids, const GridPlace& place);
-Result<void> add_mesh_to(GridWriter& to, const MeshView& mesh, float band, bool is_signed,
-                         bool (*keep_on)(void*), void* user);
+Result<void> add_mesh_to(GridWriter& to, const MeshView& mesh, float band,
+                         const std::function<bool(int, int, int)>& inside,
+                         const std::function<bool()>& keep_on);
 
 // A grid that the writer of this module collects, for add_mesh.
 openvdb::FloatGrid& float_grid_of(GridWriter& writer, std::size_t grid);

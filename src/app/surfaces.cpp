@@ -323,7 +323,7 @@ std::unique_ptr<SampleSource> Surfaces::samples(const ir::Module& module,
                                                   bare->reader.spec(), picture_, stored_);
   } else {
     surfaces = std::make_unique<surface::SurfaceSource>(module, placed_, *lens_,
-                                                        shader_->shades_background());
+                                                        joined_.front().shader->shades_background());
   }
   return std::make_unique<Both>(image_plane_samples(module, plane), std::move(surfaces));
 }

@@ -52,7 +52,25 @@ const std::vector<Entry>& variables() {
        "where a prepass found matter on the pixel's ray, and what step it looks with; for the marchers",
        "variable"},
       {"begin_frame", "if begin_frame ...",
-       "true where a frame begins: the block is computed once per frame", "variable"}};
+       "true where a frame begins: the block is computed once per frame", "variable"},
+      {"place", "place", "the surface's place in the world (docs/surfaces.md); `point` is the same "
+       "in the object's own frame", "variable of surfaces"},
+      {"normal", "normal", "the surface's direction, of length 1, on the side of the eye",
+       "variable of surfaces"},
+      {"uv", "uv", "the surface's coordinates, v upward", "variable of surfaces"},
+      {"id", "id", "number of the object, from 1", "variable of surfaces"},
+      {"depth", "depth", "metres in front of the eye's plane", "variable of surfaces"},
+      {"view", "view", "direction to the eye, of length 1", "variable of surfaces"},
+      {"light_direction", "light_direction",
+       "towards the light, of length 1; light2_direction is the second's", "variable of surfaces"},
+      {"light_color", "light_color", "what arrives from the light", "variable of surfaces"},
+      {"trace", "trace(origin, direction)",
+       "what a ray meets first: its parts are .distance .place .point .normal .uv .id .backface",
+       "rays, on surfaces"},
+      {"radiance", "radiance(origin, direction)",
+       "colour and alpha of what a ray meets, shaded by its own program", "rays, on surfaces"},
+      {"visible", "visible(place, other_place)",
+       "1 where nothing stands between two places, else 0", "rays, on surfaces"}};
   return all;
 }
 

@@ -1,12 +1,12 @@
-// The module around Assimp and Embree: the only home of both. Loaded by mesh.cpp, on demand.
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
+// The module around Assimp and Embree: the only home of both, with read_mesh.cpp. Loaded by mesh.cpp,
+// on demand.
 #include <embree3/rtcore.h>
 
-#include <assimp/Importer.hpp>
 #include <cstring>
+#include <memory>
 
 #include "surface/mesh.h"
+#include "surface/modules/read_mesh.h"
 
 namespace pse::surface {
 namespace {
@@ -102,56 +102,10 @@ class Tree : public TriangleTree {
   RTCScene scene_;
 };
 
-// All triangles of all meshes of the file, as one mesh in the file's world.
-void append(const aiMesh& from, bool normals, bool uvs, Mesh& to) {
-  const auto base = static_cast<std::uint32_t>(to.vertex_count());
-  for (unsigned v = 0; v < from.mNumVertices; ++v) {
-    const aiVector3D& p = from.mVertices[v];
-    to.positions.insert(to.positions.end(), {p.x, p.y, p.z});
-    if (normals) {
-      const aiVector3D& n = from.mNormals[v];
-      to.normals.insert(to.normals.end(), {n.x, n.y, n.z});
-    }
-    if (uvs) {
-      const aiVector3D& t = from.mTextureCoords[0][v];
-      to.uvs.insert(to.uvs.end(), {t.x, t.y});
-    }
-  }
-  for (unsigned f = 0; f < from.mNumFaces; ++f) {
-    const aiFace& face = from.mFaces[f];
-    if (face.mNumIndices != 3) continue;
-    for (unsigned k = 0; k < 3; ++k) to.triangles.push_back(base + face.mIndices[k]);
-  }
-}
-
 class Tools : public MeshTools {
  public:
   bool read(const std::string& file, Mesh& mesh, std::string& error) const override {
-    try {
-      Assimp::Importer importer;
-      const aiScene* scene = importer.ReadFile(
-          file, aiProcess_Triangulate | aiProcess_PreTransformVertices |
-                    aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
-      if (scene == nullptr) {
-        error = std::string("this is not a mesh that can be read: ") + importer.GetErrorString();
-        return false;
-      }
-      bool normals = true, uvs = true;
-      for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
-        const aiMesh& part = *scene->mMeshes[i];
-        if ((part.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) continue;
-        normals = normals && part.HasNormals();
-        uvs = uvs && part.HasTextureCoords(0);
-      }
-      for (unsigned i = 0; i < scene->mNumMeshes; ++i)
-        if ((scene->mMeshes[i]->mPrimitiveTypes & aiPrimitiveType_TRIANGLE) != 0 ||
-            scene->mNumMeshes == 1)
-          append(*scene->mMeshes[i], normals, uvs, mesh);
-      return true;
-    } catch (const std::exception& problem) {
-      error = problem.what();
-      return false;
-    }
+    return read_in_child(file, mesh, error);
   }
 
   TriangleTree* build(const Mesh& mesh, std::string& error) const override {

@@ -1,6 +1,7 @@
 // The surface of revolution: a spline through profile points, turned about Y. Each piece of the
 // spline makes a polynomial of degree 6 with a ray, in the spline's own parameter.
 #include <algorithm>
+#include <array>
 #include <numbers>
 
 #include "surface/roots.h"
@@ -142,21 +143,28 @@ class Revolution : public SingleShape {
     if (!(span.begin <= span.end)) return;
     Meeting nearest;
     nearest.t = ray.end;
+    // What may be met, in the order in which the ray may come to it: mostly the first is it.
     const Slanted seen(ray, span);
+    Waiting waiting;
+    std::size_t count = 0;
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       // Many at once that are not met.
-      if (i % group == 0 && !may_meet(ray, seen, nearest.t, groups_[i / group])) {
+      if (i % group == 0 && !(earliest(ray, seen, groups_[i / group]) < nearest.t)) {
         i += group - 1;
         continue;
       }
-      if (!may_meet(ray, seen, nearest.t, pieces_[i])) continue;
-      if (pieces_[i].heights.begin == pieces_[i].heights.end)
-        meet_disc(ray, i, nearest);
-      else if (std::abs(ray.direction.y) < 1e-4 * length(ray.direction))
-        meet_level(ray, i, nearest);
-      else
-        meet_slanted(ray, seen, i, nearest);
+      const double t = earliest(ray, seen, pieces_[i]);
+      if (!(t < nearest.t)) continue;
+      if (count == waiting.size()) {
+        meet_piece(ray, seen, i, nearest);
+        continue;
+      }
+      std::size_t at = count++;
+      for (; at > 0 && waiting[at - 1].first > t; --at) waiting[at] = waiting[at - 1];
+      waiting[at] = {t, i};
     }
+    for (std::size_t k = 0; k < count && waiting[k].first < nearest.t; ++k)
+      meet_piece(ray, seen, waiting[k].second, nearest);
     if (nearest.t < ray.end) fill(ray, nearest, hit);
   }
 
@@ -173,24 +181,40 @@ class Revolution : public SingleShape {
     return ray;
   }
 
-  // Whether the ray comes through the ring that the piece lies in, before `latest`.
-  static bool may_meet(const Ray& ray, const Slanted& seen, double latest, const Ring& piece) {
-    double begin = seen.begin, end = std::min(seen.end, latest);
+  using Waiting = std::array<std::pair<double, std::size_t>, 32>;
+
+  void meet_piece(const Ray& ray, const Slanted& seen, std::size_t index, Meeting& nearest) const {
+    if (pieces_[index].heights.begin == pieces_[index].heights.end)
+      meet_disc(ray, index, nearest);
+    else if (std::abs(ray.direction.y) < 1e-4 * length(ray.direction))
+      meet_level(ray, index, nearest);
+    else
+      meet_slanted(ray, seen, index, nearest);
+  }
+
+  // Where the ray comes to the ring at the earliest; infinite where it does not come through it.
+  static double earliest(const Ray& ray, const Slanted& seen, const Ring& ring) {
+    double begin = seen.begin, end = seen.end;
     if (ray.direction.y != 0) {
-      const double a = (piece.heights.begin - ray.origin.y) * seen.per_height,
-                   b = (piece.heights.end - ray.origin.y) * seen.per_height;
+      const double a = (ring.heights.begin - ray.origin.y) * seen.per_height,
+                   b = (ring.heights.end - ray.origin.y) * seen.per_height;
       begin = std::max(begin, std::min(a, b)), end = std::min(end, std::max(a, b));
-    } else if (ray.origin.y < piece.heights.begin || ray.origin.y > piece.heights.end) {
-      return false;
+    } else if (ray.origin.y < ring.heights.begin || ray.origin.y > ring.heights.end) {
+      return Box::inf;
     }
     constexpr double slack = 1e-9;
-    if (!(begin <= end + slack * std::abs(end))) return false;
-    const double low = piece.radii.begin, high = std::max(-low, piece.radii.end);
-    const double t = begin < end ? std::clamp(seen.middle, begin, end) : begin;
+    if (!(begin <= end + slack * std::abs(end))) return Box::inf;
+    const double low = ring.radii.begin, high = std::max(-low, ring.radii.end);
+    const double nearest = begin < end ? std::clamp(seen.middle, begin, end) : begin;
     const double room = slack * (seen.oo + high * high);
-    if (seen.squared(t) > high * high + room) return false;
-    return low <= 0 ||
-           std::max(seen.squared(begin), seen.squared(end)) >= low * low - room;
+    if (seen.squared(nearest) > high * high + room) return Box::inf;
+    const double at_begin = seen.squared(begin);
+    if (low > 0 && std::max(at_begin, seen.squared(end)) < low * low - room) return Box::inf;
+    if (at_begin <= high * high || !(seen.dd > 0)) return begin;
+    // It enters through the outer wall.
+    const double rest = high * high + room - seen.squared(seen.middle);
+    const double entry = seen.middle - std::sqrt(std::max(rest, 0.0) / seen.dd);
+    return std::max(begin, entry - slack * std::abs(entry));
   }
 
   static void keep(const Ray& ray, double t, double v, std::size_t piece, Meeting& nearest) {

@@ -1,6 +1,6 @@
 // Rays and shading of surfaces at 1024 x 1024: the bunny beside a loop over Embree alone, the marble
 // vase, and shading again from stored surfaces. Each result is checked before it is timed; the table
-// gives the median and, behind it, the fastest and slowest run. usage: bench_surface [RUNS]
+// gives the median and, behind it, the fastest and slowest run. usage: bench_surface [RUNS] [bunny|vase]
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -178,7 +178,8 @@ void bench_vase(int runs) {
 
 int main(int argc, char** argv) {
   const int runs = argc > 1 ? std::max(1, std::atoi(argv[1])) : 9;
-  bench_bunny(runs);
-  bench_vase(runs);
+  const std::string only = argc > 2 ? argv[2] : "";
+  if (only != "vase") bench_bunny(runs);
+  if (only != "bunny") bench_vase(runs);
   return failures == 0 ? 0 : 1;
 }

@@ -148,6 +148,16 @@ float Filter::moment(float distance, float nx, float ny) const {
   return of_unit() * scale_;
 }
 
+std::vector<std::array<float, 2>> Filter::places() const {
+  std::vector<std::array<float, 2>> found;
+  found.reserve(1 << 16);
+  for (int v = 0; v < 256; ++v)
+    for (int u = 0; u < 256; ++u)
+      found.push_back(
+          place((static_cast<float>(u) + 0.5f) / 256, (static_cast<float>(v) + 0.5f) / 256));
+  return found;
+}
+
 std::array<float, 2> Filter::place(float u, float v) const {
   if (kind_ == FilterKind::box) return {(u - 0.5f) * scale_, (v - 0.5f) * scale_};
   const auto [signed_distance, angle] = disc_place(u, v);

@@ -31,12 +31,24 @@ PlaceRunner::PlaceRunner(const Program& program, const FrameState& state,
   }
   for (std::size_t i = 0; i < inputs.size() && !slopes_.empty(); ++i)
     if (used_[i] && inputs[i].name == "id") id_ = i, sloping_[i] = true;
+  if (!source.is_even()) return;
+  const Planes low(sloping_, 1), high(sloping_, 1);
+  for (Slope& slope : slopes_) {
+    const double zero[] = {0}, one[] = {1};
+    source.fill(zero, zero, low.pointers());
+    source.fill(slope.along_x ? one : zero, slope.along_x ? zero : one, high.pointers());
+    slope.even = high.pointers()[slope.of][0] - low.pointers()[slope.of][0];
+  }
 }
 
 void PlaceRunner::fill(std::span<const double> x, std::span<const double> y,
                        std::span<float* const> planes) const {
   source_.fill(x, y, planes);
   if (slopes_.empty()) return;
+  if (source_.is_even()) {
+    for (const Slope& slope : slopes_) std::fill_n(planes[slope.input], x.size(), slope.even);
+    return;
+  }
   // Between the pixel's sides where the source can be asked there, else between its neighbours.
   const double step = source_.anywhere() ? 0.5 : 1;
   const auto scale = static_cast<float>(0.5 / step);

@@ -32,6 +32,7 @@ class PlaceRunner {
   struct Slope {
     std::size_t input, of;  // indices of Module::inputs
     bool along_x;
+    float even = 0;  // the slope, where it is the same everywhere
   };
   void fill(std::span<const double> x, std::span<const double> y,
             std::span<float* const> planes) const;

@@ -25,6 +25,10 @@ class Spread {
   std::array<float, 2> operator()(std::uint32_t i) const {
     return {unit(reversed(i) ^ shift_x_), unit(sobol(i) ^ shift_y_)};
   }
+  // The box of a grid of 256 by 256 that it lies in, row by row.
+  std::uint32_t box(std::uint32_t i) const {
+    return ((sobol(i) ^ shift_y_) >> 24) << 8 | (reversed(i) ^ shift_x_) >> 24;
+  }
 
  private:
   static std::uint32_t reversed(std::uint32_t i) {

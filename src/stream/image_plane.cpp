@@ -139,11 +139,33 @@ class PlaneSamples : public SampleSource {
     for (const PlaneInput& input : inputs_) {
       float* out = planes[input.input];
       if (out == nullptr) continue;
-      for (std::size_t i = 0; i < x.size(); ++i)
-        out[i] = static_cast<float>(coordinate_at(plane_, input.coordinate, x[i], y[i]));
+      const auto each = [&](auto&& value) {
+        for (std::size_t i = 0; i < x.size(); ++i) out[i] = static_cast<float>(value(i));
+      };
+      // The usual ones in loops of their own.
+      const double w = plane_.width, h = plane_.height;
+      switch (plane_.transform ? Coordinate::point_z : input.coordinate) {
+        case Coordinate::u:
+          each([&](std::size_t i) { return x[i] / w; });
+          break;
+        case Coordinate::v:
+          each([&](std::size_t i) { return 1 - y[i] / h; });
+          break;
+        case Coordinate::x:
+        case Coordinate::point_x:
+          each([&](std::size_t i) { return (2 * x[i] - w) / h; });
+          break;
+        case Coordinate::y:
+        case Coordinate::point_y:
+          each([&](std::size_t i) { return (h - 2 * y[i]) / h; });
+          break;
+        default:
+          each([&](std::size_t i) { return coordinate_at(plane_, input.coordinate, x[i], y[i]); });
+      }
     }
   }
   bool anywhere() const override { return true; }
+  bool is_even() const override { return !plane_.transform; }
 
  private:
   const ImagePlane plane_;

@@ -23,6 +23,9 @@ class SampleSource {
   // False for stored pixels (input images, another renderer's buffers): they are known at pixel
   // centres only, and fill() answers with the pixel that the place lies in.
   virtual bool anywhere() const = 0;
+
+  // Whether every input changes by the same amount from pixel to pixel, wherever these are.
+  virtual bool is_even() const { return false; }
 };
 
 }  // namespace pse

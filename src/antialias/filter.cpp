@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <utility>
 
 #include "noise/math.h"
@@ -148,8 +150,12 @@ float Filter::moment(float distance, float nx, float ny) const {
   return of_unit() * scale_;
 }
 
-std::vector<std::array<float, 2>> Filter::places() const {
-  std::vector<std::array<float, 2>> found;
+const std::vector<std::array<float, 2>>& Filter::places() const {
+  static std::mutex mutex;
+  static std::map<std::pair<FilterKind, float>, std::vector<std::array<float, 2>>> made;
+  const std::lock_guard lock(mutex);
+  auto& found = made[{kind_, scale_}];
+  if (!found.empty()) return found;
   found.reserve(1 << 16);
   for (int v = 0; v < 256; ++v)
     for (int u = 0; u < 256; ++u)

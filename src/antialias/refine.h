@@ -2,8 +2,6 @@
 // chapter's "More Detailed Description", pixel by pixel.
 #pragma once
 
-#include <mutex>
-
 #include "antialias/places.h"
 #include "antialias/programs.h"
 #include "antialias/tile.h"
@@ -58,8 +56,6 @@ class Refiner {
   const PlaceRunner* edges_;
   const Options& options_;
   std::size_t outputs_;
-  mutable std::once_flag placed_;
-  mutable std::vector<std::array<float, 2>> places_;  // of the kernel, made when first needed
 };
 
 }  // namespace pse::antialias

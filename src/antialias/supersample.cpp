@@ -21,7 +21,7 @@ constexpr std::uint32_t first_look = 16;
 Refined Refiner::sample(std::vector<Pixel> pixels, std::uint32_t first, std::uint32_t last,
                         std::vector<bool>* uneven, RunStatus& status) const {
   const std::size_t each = last - first;
-  std::call_once(placed_, [&] { places_ = options_.filter.places(); });
+  const std::vector<std::array<float, 2>>& offsets = options_.filter.places();
   Refined result{std::move(pixels), Results(outputs_)};
   for (auto& values : result.values) values.resize(result.pixels.size());
   if (uneven) uneven->assign(result.pixels.size(), false);
@@ -33,7 +33,7 @@ Refined Refiner::sample(std::vector<Pixel> pixels, std::uint32_t first, std::uin
       const Pixel& pixel = result.pixels[i];
       const Spread spread(pixel.x, pixel.y);
       for (std::uint32_t k = first; k < last; ++k) {
-        const auto [dx, dy] = places_[spread.box(k)];
+        const auto [dx, dy] = offsets[spread.box(k)];
         places.add(pixel.x + 0.5 + double(dx), pixel.y + 0.5 + double(dy));
       }
     }

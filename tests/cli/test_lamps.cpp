@@ -31,6 +31,13 @@ TEST_F(Lamps, AFarLampIsSeenWhereNothingStandsBetween) {
   EXPECT_NEAR(seen(lamp, half_), 0.5f, 0.02f);
 }
 
+TEST_F(Lamps, AFarLampIsAsWideAsItsSize) {
+  // The lamp of sine 0.3 covers a disc of radius 0.6 at the slab's height, and the slab all of it
+  // beyond half a radius from its middle: the segment (PI / 3 - sqrt(3) / 4) / PI.
+  const std::string slab = "[[object]]\nshape = \"box\"\nsize = [40, 0.01, 40]\nat = [20.3, 2, 0]\n";
+  EXPECT_NEAR(seen("far_lamp(place, normal, [0 1 0], 0.3, 512)", slab), 1 - 0.1955f, 0.01f);
+}
+
 TEST_F(Lamps, ALampBehindTheFloorIsNotSeen) {
   EXPECT_EQ(seen("far_lamp(place, normal, [0 -1 0], 0.1, 16)", ""), 0.0f);
 }

@@ -12,6 +12,12 @@ constexpr int side = 8;  // samples looked at: side x side
 
 }  // namespace
 
+void OperationCounts::add(const OperationCounts& other) {
+  for (std::size_t i = 0; i < written.size(); ++i) written[i] += other.written[i];
+  frame += other.frame;
+  sample += other.sample;
+}
+
 void count_written(std::string_view pass, const ir::Module& module, OperationCounts& counts) {
   // Without optimising there is no second chance.
   if (pass != "lower" && pass != "inline") return;

@@ -17,7 +17,10 @@ struct OperationCounts {
   std::size_t frame = 0, sample = 0;
   // Carried out by the frame function and, on average, for a sample; every turn of a loop counts.
   double frame_run = 0, sample_run = 0;
-  int samples_looked_at = 0;  // 0: the program did not run
+  int samples_looked_at = 0;  // 0: the program did not run, or it runs for a scene
+
+  // Adds what is written and compiled; of a scene all programs count.
+  void add(const OperationCounts& other);
 };
 
 // For PipelineOptions::after_pass: keeps the counts of the program as written.

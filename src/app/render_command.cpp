@@ -142,9 +142,10 @@ Exit render_command(Session& session) {
       report(diagnostics, shown.sources, session);
       continue;
     }
+    OperationCounts counts;
     if (!stats.empty())
       compile_with.after_pass = [&](std::string_view pass, const ir::Module& module) {
-        count_written(pass, module, operations);
+        count_written(pass, module, counts);
       };
     auto front = compile_front(program.sources, file, host, compile_with, diagnostics);
     report(diagnostics, program.sources, session);
@@ -152,6 +153,8 @@ Exit render_command(Session& session) {
     auto made =
         antialias::compile_programs(std::move(*front), compile_with, options.antialias.mode);
     if (!made) throw Failure(Exit::program, made.error());
+    count_compiled(*made->shown->split, counts);
+    operations.add(counts);
     // Of several programs each takes the knobs that it has.
     const std::vector<Knob>& own = made->shown->knobs;
     std::vector<Knob> knobs = apply_settings(
@@ -180,7 +183,7 @@ Exit render_command(Session& session) {
   const Exit exit = job.run();
   if (!stats.empty()) {
     RunStats numbers = job.stats();
-    numbers.operations.written = operations.written;
+    numbers.operations.add(operations);
     numbers.total_seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (stats == "json")

@@ -76,7 +76,6 @@ RenderJob::RenderJob(Session& session, const RenderOptions& options, const Sourc
   window_ = choose_window();
   count_operations_ = session.arguments.has("stats");
   stats_.compile = program_->times;
-  count_compiled(*program_->split, stats_.operations);
   stats_.width = program_->kernel->width();
   stats_.threads = thread_count(options_.threads);
   image::set_codec_threads(stats_.threads);

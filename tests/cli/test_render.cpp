@@ -320,6 +320,11 @@ TEST_F(Render, OperationsByRate) {
   EXPECT_EQ(count("/run/frame"), 2);
   EXPECT_EQ(count("/run/sample"), 3);
   EXPECT_EQ(count("/run/samples_looked_at"), 64);
+  // On objects too.
+  file("b.pse", "heat = normal.x * (2 * frame + sqrt(2)) + normal.y * normal.z\n");
+  const Ended ended = pse({"render", "b.pse", "--stats=json", "--on", "sphere", "--res", "8x8"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(nlohmann::json::parse(ended.out)["operations"]["compiled"]["sample"], 3);
   // Where half of the samples turn a loop more often, the average shows it.
   const std::string loop = "t = 0\nwhile t < (x > 0 ? Turns : 1)\n    t += 1\nheat = t\n";
   file("a.pse", "Turns = 11\n" + loop);

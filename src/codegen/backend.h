@@ -13,6 +13,8 @@
 namespace pse {
 
 enum class BackendProduct { object, llvm, assembly };
+// Which entry points: objects hold one, listings show both.
+enum class BackendPart { samples, frame, both };
 
 struct BackendRequest {
   const passes::SplitModule* split = nullptr;
@@ -20,6 +22,9 @@ struct BackendRequest {
   int width = 0;
   bool optimize = true;
   BackendProduct product = BackendProduct::object;
+  BackendPart part = BackendPart::samples;
+  // Large programs are cut into pieces that compile side by side: the functions of piece `piece`.
+  int piece = 0, pieces = 1;
 };
 
 struct BackendReply {

@@ -1,4 +1,4 @@
-// A small loader: places the sections of a relocatable object in one mapping, applies the
+// A small loader: places the sections of relocatable objects in one mapping, applies the
 // relocations that position-independent x86-64 code needs (System V ABI, AMD64 supplement,
 // section 4.4), and makes it executable. Every offset is checked: a damaged file is refused, never
 // followed.
@@ -41,9 +41,10 @@ void write_stub(std::byte* place, const void* target) {
 
 constexpr std::size_t no_place = ~std::size_t{0};
 
-class Loader {
+// One object file: its sections and symbols as the file says, checked to lie inside it.
+class ObjectFile {
  public:
-  explicit Loader(std::span<const std::byte> file) : file_(file) {}
+  explicit ObjectFile(std::span<const std::byte> file) : file_(file) {}
 
   bool read_headers() {
     Elf64_Ehdr header;
@@ -56,71 +57,9 @@ class Loader {
       if (!read(header.e_shoff + i * sizeof section, section)) return false;
       if (section.sh_type != SHT_NOBITS && !inside(section.sh_offset, section.sh_size))
         return false;
-      sections_.push_back(section);
+      sections.push_back(section);
     }
     return read_symbols();
-  }
-
-  // Gives every section that is needed at run time its place, and one stub to every function of the
-  // host.
-  bool lay_out() {
-    std::size_t end = 0;
-    for (const Elf64_Shdr& section : sections_) {
-      const bool needed = (section.sh_flags & SHF_ALLOC) != 0 &&
-                          section.sh_type != SHT_X86_64_UNWIND && section.sh_type != SHT_NOTE;
-      if (!needed || section.sh_size == 0) {
-        places_.push_back(no_place);
-        continue;
-      }
-      const std::size_t align = section.sh_addralign > 64 ? section.sh_addralign : 64;
-      if ((section.sh_flags & SHF_WRITE) != 0 || align > 4096 || (align & (align - 1)) != 0)
-        return false;
-      if (section.sh_size > limit) return false;
-      end = (end + align - 1) & ~(align - 1);
-      places_.push_back(end);
-      end += section.sh_size;
-      if (end > limit) return false;
-    }
-    stubs_ = (end + 63) & ~std::size_t{63};
-    size_ = stubs_ + stub_size * symbols_.size();
-    return true;
-  }
-
-  std::size_t size() const { return size_; }
-
-  bool fill(std::byte* memory) {
-    for (std::size_t i = 0; i < sections_.size(); ++i) {
-      if (places_[i] == no_place || sections_[i].sh_type == SHT_NOBITS) continue;
-      std::memcpy(memory + places_[i], file_.data() + sections_[i].sh_offset, sections_[i].sh_size);
-    }
-    for (std::size_t i = 0; i < symbols_.size(); ++i) {
-      if (symbols_[i].st_shndx != SHN_UNDEF) continue;
-      if (const void* function = host_function(name(i)))
-        write_stub(memory + stubs_ + stub_size * i, function);
-    }
-    for (const Elf64_Shdr& section : sections_) {
-      if (section.sh_type == SHT_RELA && !relocate(section, memory)) return false;
-      if (section.sh_type == SHT_REL) return false;
-    }
-    return true;
-  }
-
-  void export_symbols(const std::byte* memory,
-                      std::unordered_map<std::string, const void*>& to) const {
-    for (std::size_t i = 0; i < symbols_.size(); ++i) {
-      std::size_t place;
-      if (ELF64_ST_BIND(symbols_[i].st_info) == STB_GLOBAL && symbols_[i].st_shndx != SHN_UNDEF &&
-          place_of(i, place)) {
-        to.emplace(std::string(name(i)), memory + place);
-      }
-    }
-  }
-
- private:
-  static constexpr std::size_t limit = std::size_t{1} << 30;
-
-  bool inside(std::uint64_t offset, std::uint64_t size) const {
-    return offset <= file_.size() && size <= file_.size() - offset;
   }
 
   template <class T>
@@ -130,52 +69,158 @@ class Loader {
     return true;
   }
 
-  bool read_symbols() {
-    for (const Elf64_Shdr& section : sections_) {
-      if (section.sh_type != SHT_SYMTAB) continue;
-      if (section.sh_link >= sections_.size()) return false;
-      const Elf64_Shdr& strings = sections_[section.sh_link];
-      names_ = {reinterpret_cast<const char*>(file_.data()) + strings.sh_offset, strings.sh_size};
-      for (std::uint64_t at = 0; at + sizeof(Elf64_Sym) <= section.sh_size;
-           at += sizeof(Elf64_Sym)) {
-        Elf64_Sym symbol;
-        if (!read(section.sh_offset + at, symbol)) return false;
-        symbols_.push_back(symbol);
-      }
-    }
-    return true;
+  const std::byte* contents(const Elf64_Shdr& section) const {
+    return file_.data() + section.sh_offset;
   }
 
   std::string_view name(std::size_t symbol) const {
-    const std::size_t at = symbols_[symbol].st_name;
+    const std::size_t at = symbols[symbol].st_name;
     if (at >= names_.size()) return {};
     const std::string_view rest = names_.substr(at);
     return rest.substr(0, rest.find('\0'));
   }
 
-  // Where a symbol is, from the start of the mapping.
-  bool place_of(std::size_t index, std::size_t& place) const {
-    if (index >= symbols_.size()) return false;
-    const Elf64_Sym& symbol = symbols_[index];
-    if (symbol.st_shndx == SHN_UNDEF) {
-      place = stubs_ + stub_size * index;
-      return host_function(name(index)) != nullptr;
+  bool exports(std::size_t symbol) const {
+    return ELF64_ST_BIND(symbols[symbol].st_info) == STB_GLOBAL &&
+           symbols[symbol].st_shndx != SHN_UNDEF;
+  }
+
+  std::vector<Elf64_Shdr> sections;
+  std::vector<Elf64_Sym> symbols;
+  std::vector<std::size_t> places;  // per section: offset in the mapping
+  std::size_t stubs = 0;            // likewise, of the first symbol's stub
+
+ private:
+  bool inside(std::uint64_t offset, std::uint64_t size) const {
+    return offset <= file_.size() && size <= file_.size() - offset;
+  }
+
+  bool read_symbols() {
+    for (const Elf64_Shdr& section : sections) {
+      if (section.sh_type != SHT_SYMTAB) continue;
+      if (section.sh_link >= sections.size()) return false;
+      const Elf64_Shdr& strings = sections[section.sh_link];
+      names_ = {reinterpret_cast<const char*>(file_.data()) + strings.sh_offset, strings.sh_size};
+      for (std::uint64_t at = 0; at + sizeof(Elf64_Sym) <= section.sh_size;
+           at += sizeof(Elf64_Sym)) {
+        Elf64_Sym symbol;
+        if (!read(section.sh_offset + at, symbol)) return false;
+        symbols.push_back(symbol);
+      }
     }
-    if (symbol.st_shndx >= places_.size() || places_[symbol.st_shndx] == no_place) return false;
-    if (symbol.st_value > sections_[symbol.st_shndx].sh_size) return false;
-    place = places_[symbol.st_shndx] + symbol.st_value;
     return true;
   }
 
-  bool relocate(const Elf64_Shdr& table, std::byte* memory) const {
-    if (table.sh_info >= sections_.size()) return false;
-    const std::size_t target = places_[table.sh_info];
+  std::span<const std::byte> file_;
+  std::string_view names_;
+};
+
+// Several files as one mapping; what one file lacks another may have.
+class Loader {
+ public:
+  bool read(std::span<const std::span<const std::byte>> objects) {
+    for (const std::span<const std::byte> object : objects) {
+      if (!files_.emplace_back(object).read_headers()) return false;
+    }
+    return true;
+  }
+
+  // Gives every section that is needed at run time its place, and one stub to every function of the
+  // host.
+  bool lay_out() {
+    for (ObjectFile& file : files_) {
+      for (const Elf64_Shdr& section : file.sections) {
+        if (!place(file, section)) return false;
+      }
+      file.stubs = size_ = (size_ + 63) & ~std::size_t{63};
+      size_ += stub_size * file.symbols.size();
+      if (size_ > limit) return false;
+    }
+    for (const ObjectFile& file : files_) {
+      for (std::size_t i = 0; i < file.symbols.size(); ++i) {
+        std::size_t at;
+        if (file.exports(i) && place_of(file, i, at)) exported_.emplace(file.name(i), at);
+      }
+    }
+    return true;
+  }
+
+  std::size_t size() const { return size_; }
+
+  bool fill(std::byte* memory) {
+    for (const ObjectFile& file : files_) {
+      for (std::size_t i = 0; i < file.sections.size(); ++i) {
+        const Elf64_Shdr& section = file.sections[i];
+        if (file.places[i] == no_place || section.sh_type == SHT_NOBITS) continue;
+        std::memcpy(memory + file.places[i], file.contents(section), section.sh_size);
+      }
+      for (std::size_t i = 0; i < file.symbols.size(); ++i) {
+        if (file.symbols[i].st_shndx != SHN_UNDEF) continue;
+        if (const void* function = host_function(file.name(i)))
+          write_stub(memory + file.stubs + stub_size * i, function);
+      }
+      for (const Elf64_Shdr& section : file.sections) {
+        if (section.sh_type == SHT_RELA && !relocate(file, section, memory)) return false;
+        if (section.sh_type == SHT_REL) return false;
+      }
+    }
+    return true;
+  }
+
+  void export_symbols(const std::byte* memory,
+                      std::unordered_map<std::string, const void*>& to) const {
+    for (const auto& [name, at] : exported_) to.emplace(std::string(name), memory + at);
+  }
+
+ private:
+  static constexpr std::size_t limit = std::size_t{1} << 30;
+
+  bool place(ObjectFile& file, const Elf64_Shdr& section) {
+    const bool needed = (section.sh_flags & SHF_ALLOC) != 0 &&
+                        section.sh_type != SHT_X86_64_UNWIND && section.sh_type != SHT_NOTE;
+    if (!needed || section.sh_size == 0) {
+      file.places.push_back(no_place);
+      return true;
+    }
+    const std::size_t align = section.sh_addralign > 64 ? section.sh_addralign : 64;
+    if ((section.sh_flags & SHF_WRITE) != 0 || align > 4096 || (align & (align - 1)) != 0)
+      return false;
+    if (section.sh_size > limit) return false;
+    size_ = (size_ + align - 1) & ~(align - 1);
+    file.places.push_back(size_);
+    size_ += section.sh_size;
+    return size_ <= limit;
+  }
+
+  // Where a symbol is, from the start of the mapping.
+  bool place_of(const ObjectFile& file, std::size_t index, std::size_t& at) const {
+    if (index >= file.symbols.size()) return false;
+    const Elf64_Sym& symbol = file.symbols[index];
+    if (symbol.st_shndx == SHN_UNDEF) {
+      if (const auto found = exported_.find(file.name(index)); found != exported_.end()) {
+        at = found->second;
+        return true;
+      }
+      at = file.stubs + stub_size * index;
+      return host_function(file.name(index)) != nullptr;
+    }
+    if (symbol.st_shndx >= file.places.size() || file.places[symbol.st_shndx] == no_place)
+      return false;
+    if (symbol.st_value > file.sections[symbol.st_shndx].sh_size) return false;
+    at = file.places[symbol.st_shndx] + symbol.st_value;
+    return true;
+  }
+
+  bool relocate(const ObjectFile& file, const Elf64_Shdr& table, std::byte* memory) const {
+    if (table.sh_info >= file.sections.size()) return false;
+    const std::size_t target = file.places[table.sh_info];
     if (target == no_place) return true;  // of a section that is not loaded
-    const std::size_t target_size = sections_[table.sh_info].sh_size;
+    const std::size_t target_size = file.sections[table.sh_info].sh_size;
     for (std::uint64_t at = 0; at + sizeof(Elf64_Rela) <= table.sh_size; at += sizeof(Elf64_Rela)) {
       Elf64_Rela entry;
       std::size_t symbol;
-      if (!read(table.sh_offset + at, entry) || !place_of(ELF64_R_SYM(entry.r_info), symbol))
+      if (!file.read(table.sh_offset + at, entry) ||
+          !place_of(file, ELF64_R_SYM(entry.r_info), symbol))
         return false;
       const auto type = ELF64_R_TYPE(entry.r_info);
       const std::size_t width = type == R_X86_64_64 ? 8 : 4;
@@ -198,22 +243,20 @@ class Loader {
     return true;
   }
 
-  std::span<const std::byte> file_;
-  std::string_view names_;
-  std::vector<Elf64_Shdr> sections_;
-  std::vector<Elf64_Sym> symbols_;
-  std::vector<std::size_t> places_;  // per section: offset in the mapping
-  std::size_t stubs_ = 0, size_ = 0;
+  std::vector<ObjectFile> files_;
+  std::unordered_map<std::string_view, std::size_t> exported_;  // places of global symbols
+  std::size_t size_ = 0;
 };
 
 }  // namespace
 
-std::expected<CodeObject, std::string> CodeObject::load(std::span<const std::byte> object) {
+std::expected<CodeObject, std::string> CodeObject::load(
+    std::span<const std::span<const std::byte>> objects) {
   const auto refuse = [] {
     return std::unexpected(std::string("the compiled code cannot be loaded"));
   };
-  Loader loader(object);
-  if (!loader.read_headers() || !loader.lay_out()) return refuse();
+  Loader loader;
+  if (!loader.read(objects) || !loader.lay_out()) return refuse();
   CodeObject code;
   code.size_ = loader.size();
   void* pages =

@@ -1,4 +1,4 @@
-// Machine code in memory: a relocatable ELF object, fresh from LLVM or from the cache, made
+// Machine code in memory: relocatable ELF objects, fresh from LLVM or from the cache, made
 // executable without LLVM. The last step before a kernel runs.
 #pragma once
 
@@ -14,9 +14,10 @@ namespace pse {
 // Owns the pages. The code can be called as long as this lives.
 class CodeObject {
  public:
-  // Takes x86-64 relocatable objects whose only undefined symbols are the few functions of
+  // Takes x86-64 relocatable objects that together lack no symbols but the few functions of
   // code_object.cpp's list.
-  static std::expected<CodeObject, std::string> load(std::span<const std::byte> object);
+  static std::expected<CodeObject, std::string> load(
+      std::span<const std::span<const std::byte>> objects);
 
   CodeObject(CodeObject&& other) noexcept;
   CodeObject& operator=(CodeObject&& other) noexcept;

@@ -1,12 +1,18 @@
 // From a SplitModule to a kernel: the cache first, LLVM only if that has nothing.
 // The whole of code generation reads here.
 #include <chrono>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
 
 #include "codegen/backend.h"
 #include "codegen/code_object.h"
 #include "codegen/compiled_kernel.h"
+#include "codegen/frame_code.h"
 #include "codegen/kernel_cache.h"
 #include "codegen/module_hash.h"
+#include "codegen/object_bundle.h"
 #include "codegen/target.h"
 #include "ir/count.h"
 
@@ -47,7 +53,7 @@ std::expected<BackendRequest, std::string> make_request(const passes::SplitModul
 // Everything that decides the code. The compiler itself is known by its file's size and time.
 Hash128 key_of(const BackendRequest& request) {
   Hasher hasher;
-  hasher.add("pse kernel 1");
+  hasher.add("pse kernel 2");
   std::error_code error;
   const auto path = backend_path();
   hasher.add(std::filesystem::file_size(path, error));
@@ -55,14 +61,60 @@ Hash128 key_of(const BackendRequest& request) {
   hasher.add(request.target->name);
   hasher.add(request.width);
   hasher.add(request.optimize);
+  hasher.add(request.part);
   hash_program(hasher, *request.split);
   return hasher.finish();
 }
 
-std::unique_ptr<Kernel> load(const BackendRequest& request, const std::string& object) {
-  auto code = CodeObject::load(std::as_bytes(std::span(object)));
-  if (!code) return nullptr;
-  return CompiledKernel::make(*request.split, std::move(*code), request.width);
+// Two pieces at once take little more than half the time; a small program is sooner done in one.
+// The machine does not matter: what is kept is the same everywhere.
+int pieces_of(const BackendRequest& request) {
+  constexpr std::size_t large = 350;
+  if (request.part == BackendPart::frame) return 1;
+  const ir::Module& module = request.split->module;
+  const std::size_t frame = ir::count_instructions(module.functions[request.split->frame]);
+  return ir::count_instructions(module) - frame > large ? 2 : 1;
+}
+
+std::expected<std::string, std::string> make_objects(BackendRequest request) {
+  request.pieces = pieces_of(request);
+  std::vector<std::expected<std::string, std::string>> made(
+      static_cast<std::size_t>(request.pieces));
+  const auto make = [&](int piece) {
+    BackendRequest mine = request;
+    mine.piece = piece;
+    made[static_cast<std::size_t>(piece)] = run_backend(mine);
+  };
+  {
+    std::vector<std::jthread> others;
+    for (int piece = 1; piece < request.pieces; ++piece) others.emplace_back(make, piece);
+    make(0);
+  }
+  std::vector<std::string> objects;
+  for (auto& object : made) {
+    if (!object) return std::unexpected(object.error());
+    objects.push_back(std::move(*object));
+  }
+  return bundle(objects);
+}
+
+struct Made {
+  CodeObject code;
+  bool from_cache = false;
+};
+
+// The code of one entry point.
+std::expected<Made, std::string> code_of(const BackendRequest& request, const KernelCache& cache) {
+  const Hash128 key = cache.keeps() ? key_of(request) : Hash128{};
+  if (const auto cached = cache.find(key)) {
+    if (auto code = CodeObject::load(unbundle(*cached))) return Made{std::move(*code), true};
+  }
+  const auto objects = make_objects(request);
+  if (!objects) return std::unexpected(objects.error());
+  auto code = CodeObject::load(unbundle(*objects));
+  if (!code) return std::unexpected(code.error());
+  cache.keep(key, *objects);
+  return Made{std::move(*code), false};
 }
 
 }  // namespace
@@ -78,22 +130,26 @@ std::expected<std::unique_ptr<Kernel>, std::string> compile_kernel(const passes:
                            std::string(request->target->name));
   }
   const KernelCache cache(options.cache);
-  const Hash128 key = options.cache.empty() ? Hash128{} : key_of(*request);
+  auto made = code_of(*request, cache);
+  if (!made) return std::unexpected(made.error());
 
-  std::unique_ptr<Kernel> kernel;
-  if (const auto cached = cache.find(key)) kernel = load(*request, *cached);
-  const bool from_cache = kernel != nullptr;
-  if (!kernel) {
-    const auto object = run_backend(*request);
-    if (!object) return std::unexpected(object.error());
-    kernel = load(*request, *object);
-    if (!kernel) return std::unexpected(std::string("the compiled code cannot be loaded"));
-    cache.keep(key, *object);
-  }
+  const auto compile_frame =
+      [cache, frame = *request](const passes::SplitModule& part) -> std::optional<CodeObject> {
+    BackendRequest mine = frame;
+    mine.split = &part;
+    mine.part = BackendPart::frame;
+    auto code = code_of(mine, cache);
+    if (!code) return std::nullopt;
+    return std::move(code->code);
+  };
+  std::unique_ptr<Kernel> kernel = CompiledKernel::make(
+      split, std::move(made->code), request->width,
+      std::make_unique<const FrameCode>(split, compile_frame, options.compile_frame));
+  if (!kernel) return std::unexpected(std::string("the compiled code cannot be loaded"));
   if (stats) {
     stats->seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    stats->from_cache = from_cache;
+    stats->from_cache = made->from_cache;
     stats->width = request->width;
     stats->cpu = request->target->name;
   }
@@ -106,6 +162,7 @@ std::expected<std::string, std::string> emit_listing(const passes::SplitModule& 
   auto request = make_request(split, options);
   if (!request) return std::unexpected(request.error());
   request->product = listing == Listing::llvm ? BackendProduct::llvm : BackendProduct::assembly;
+  request->part = BackendPart::both;
   return run_backend(*request);
 }
 

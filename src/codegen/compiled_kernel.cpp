@@ -7,14 +7,6 @@
 namespace pse {
 namespace {
 
-void report(const KernelCall& call, RunStatus& status, std::int64_t first) {
-  if (call.failed_check < 0) return;
-  std::int32_t none = -1;
-  if (status.failed_check.compare_exchange_strong(none, call.failed_check)) {
-    status.failed_sample = static_cast<std::uint32_t>(first + call.failed_sample);
-  }
-}
-
 float* aligned(float* memory) {
   const auto address = std::bit_cast<std::uintptr_t>(memory);
   return memory + ((64 - address % 64) % 64) / sizeof(float);
@@ -23,44 +15,27 @@ float* aligned(float* memory) {
 }  // namespace
 
 std::unique_ptr<CompiledKernel> CompiledKernel::make(const passes::SplitModule& split,
-                                                     CodeObject code, int width) {
-  std::unique_ptr<CompiledKernel> kernel(new CompiledKernel(split, std::move(code), width));
-  return kernel->samples_ && kernel->frame_ ? std::move(kernel) : nullptr;
+                                                     CodeObject code, int width,
+                                                     std::unique_ptr<const FrameCode> frame) {
+  std::unique_ptr<CompiledKernel> kernel(
+      new CompiledKernel(split, std::move(code), width, std::move(frame)));
+  return kernel->samples_ ? std::move(kernel) : nullptr;
 }
 
-CompiledKernel::CompiledKernel(const passes::SplitModule& split, CodeObject code, int width)
+CompiledKernel::CompiledKernel(const passes::SplitModule& split, CodeObject code, int width,
+                               std::unique_ptr<const FrameCode> frame)
     : code_(std::move(code)),
+      frame_(std::move(frame)),
       width_(width),
       output_count_(split.module.outputs.size()),
-      slot_count_(split.module.functions[split.frame].body.yields.size()),
-      first_slot_(split.first_slot),
-      frame_layout_(split.module.main().arrays),
       sample_layout_(split.module.main().arrays, width) {
   for (const ir::Input& input : split.module.inputs)
     is_sample_input_.push_back(input.rate == ir::Rate::sample);
-  for (const ir::Array& array : split.module.main().arrays)
-    initial_lengths_.push_back(array.initial_length);
   samples_ = reinterpret_cast<KernelEntry>(const_cast<void*>(code_.find(samples_symbol)));
-  frame_ = reinterpret_cast<KernelEntry>(const_cast<void*>(code_.find(frame_symbol)));
 }
 
 void CompiledKernel::run_frame(FrameState& state, RunStatus& status) const {
-  state.uniforms.resize(is_sample_input_.size());
-  state.arrays.assign(static_cast<std::size_t>(frame_layout_.size), 0.0f);
-  state.array_lengths = initial_lengths_;
-  std::vector<float> slots(slot_count_);
-  float* const outputs[] = {slots.data()};
-  KernelCall call;
-  call.outputs = outputs;
-  call.count = 1;
-  call.uniforms = state.uniforms.data();
-  call.frame_arrays = state.arrays.data();
-  call.frame_lengths = state.array_lengths.data();
-  call.cancel = &status.cancel;
-  call.externals = state.externals.data();
-  frame_(&call);
-  report(call, status, 0);
-  std::ranges::copy(slots, state.uniforms.begin() + static_cast<std::ptrdiff_t>(first_slot_));
+  frame_->run(state, status);
 }
 
 void CompiledKernel::run_samples(const FrameState& state, RunStatus& status, Scratch& scratch,

@@ -6,6 +6,7 @@
 
 #include "codegen/array_layout.h"
 #include "codegen/code_object.h"
+#include "codegen/frame_code.h"
 #include "codegen/kernel.h"
 #include "codegen/kernel_call.h"
 
@@ -15,7 +16,7 @@ class CompiledKernel final : public Kernel {
  public:
   // Null where the object lacks an entry point.
   static std::unique_ptr<CompiledKernel> make(const passes::SplitModule& split, CodeObject code,
-                                              int width);
+                                              int width, std::unique_ptr<const FrameCode> frame);
 
   int width() const override { return width_; }
   void run_frame(FrameState& state, RunStatus& status) const override;
@@ -24,18 +25,18 @@ class CompiledKernel final : public Kernel {
                    std::int64_t count) const override;
 
  private:
-  CompiledKernel(const passes::SplitModule& split, CodeObject code, int width);
+  CompiledKernel(const passes::SplitModule& split, CodeObject code, int width,
+                 std::unique_ptr<const FrameCode> frame);
   void run_tail(KernelCall call, RunStatus& status, float* buffers, std::int64_t first,
                 std::int64_t count) const;
 
   CodeObject code_;
+  std::unique_ptr<const FrameCode> frame_;
   int width_;
   std::vector<bool> is_sample_input_;
-  std::size_t output_count_, slot_count_, first_slot_;
-  std::vector<std::int32_t> initial_lengths_;
-  FrameArrayLayout frame_layout_;
+  std::size_t output_count_;
   SampleArrayLayout sample_layout_;
-  KernelEntry samples_ = nullptr, frame_ = nullptr;
+  KernelEntry samples_ = nullptr;
 };
 
 }  // namespace pse

@@ -2,46 +2,19 @@
 #include <algorithm>
 #include <utility>
 
-#include "codegen/array_layout.h"
-#include "codegen/kernel.h"
-#include "ir/interpreter.h"
+#include "codegen/interpreted_frame.h"
 
 namespace pse {
 namespace {
 
-// Whose array memory a run uses: the frame's for arrays of rate frame, the sample's own for the
-// others.
-struct ArrayPlaces {
-  std::vector<ir::ArrayView> views;
-  std::vector<std::int32_t> sample_lengths;
-};
-
-std::size_t floats_of(const ir::Array& array) {
-  return static_cast<std::size_t>(array.components) * static_cast<std::size_t>(array.capacity);
-}
-
 // Floats that the arrays of rate sample take, one after another as planes.
 std::size_t sample_size(const std::vector<ir::Array>& arrays) {
   std::size_t size = 0;
-  for (const ir::Array& array : arrays)
-    size += array.rate == ir::Rate::sample ? floats_of(array) : 0;
-  return size;
-}
-
-ArrayPlaces place_arrays(const std::vector<ir::Array>& arrays, float* frame,
-                         std::int32_t* frame_lengths, float* sample) {
-  const FrameArrayLayout layout(arrays);
-  ArrayPlaces places;
-  places.sample_lengths.resize(arrays.size());
-  for (std::size_t i = 0; i < arrays.size(); ++i) {
-    if (arrays[i].rate != ir::Rate::sample) {
-      places.views.push_back({frame + layout.offset[i], &frame_lengths[i]});
-      continue;
-    }
-    places.views.push_back({sample, &places.sample_lengths[i]});
-    sample += floats_of(arrays[i]);
+  for (const ir::Array& array : arrays) {
+    if (array.rate == ir::Rate::sample)
+      size += static_cast<std::size_t>(array.components) * static_cast<std::size_t>(array.capacity);
   }
-  return places;
+  return size;
 }
 
 // Sample-rate arrays as each sample finds them. Elements past the length are never seen before they
@@ -57,19 +30,6 @@ void begin_sample(const std::vector<ir::Array>& arrays, ArrayPlaces& places) {
   }
 }
 
-// The host's functions, called for one sample.
-ir::ExternalCallback external_caller(const FrameState& state) {
-  return
-      [&state](std::uint32_t external, std::span<const float> arguments, std::span<float> results) {
-        std::vector<const float*> argument_places;
-        std::vector<float*> result_places;
-        for (const float& argument : arguments) argument_places.push_back(&argument);
-        for (float& result : results) result_places.push_back(&result);
-        const ExternalFunction& function = state.externals[external];
-        function.call(function.user, 1, argument_places.data(), result_places.data());
-      };
-}
-
 class InterpretedKernel final : public Kernel {
  public:
   explicit InterpretedKernel(std::shared_ptr<const passes::SplitModule> split,
@@ -79,29 +39,9 @@ class InterpretedKernel final : public Kernel {
   int width() const override { return 1; }
 
   void run_frame(FrameState& state, RunStatus& status) const override {
-    const ir::Module& module = split_->module;
-    const ir::Function& function = module.functions[split_->frame];
-    state.uniforms.resize(module.inputs.size());
-    state.arrays.assign(static_cast<std::size_t>(FrameArrayLayout(function.arrays).size), 0.0f);
-    state.array_lengths.clear();
-    for (const ir::Array& array : function.arrays)
-      state.array_lengths.push_back(array.initial_length);
-
-    const ArrayPlaces places =
-        place_arrays(function.arrays, state.arrays.data(), state.array_lengths.data(), nullptr);
-    const ir::ExternalCallback external = external_caller(state);
-    const ir::Environment environment{.inputs = state.uniforms,
-                                      .arrays = places.views,
-                                      .external = &external,
-                                      .cancel = &status.cancel};
-    std::vector<ir::Bits> slots(function.body.yields.size());
-    ir::Interpreter interpreter(module);
-    const ir::Outcome outcome = interpreter.run(split_->frame, {}, environment, slots);
-    if (counter_ != nullptr) counter_->frame += interpreter.operations();
-    // Slots keep their bits as they are: they may carry an integer.
-    for (std::size_t i = 0; i < slots.size(); ++i)
-      state.uniforms[split_->first_slot + i] = ir::to_f32(slots[i]);
-    if (outcome.end == ir::End::failed_check) fail(status, outcome.check, 0);
+    std::uint64_t operations = 0;
+    interpret_frame(*split_, state, status, no_limit, &operations);
+    if (counter_ != nullptr) counter_->frame += operations;
   }
 
   void run_samples(const FrameState& state, RunStatus& status, Scratch& scratch,
@@ -136,7 +76,7 @@ class InterpretedKernel final : public Kernel {
       const ir::Outcome outcome = interpreter.run(module.entry, {}, environment, results);
       if (counter_ != nullptr) counter_->sample += interpreter.operations();
       if (outcome.end == ir::End::failed_check)
-        fail(status, outcome.check, static_cast<std::uint32_t>(sample));
+        report_failure(status, outcome.check, static_cast<std::uint32_t>(sample));
       if (outcome.end != ir::End::finished) return;
       for (std::size_t i = 0; i < results.size(); ++i)
         outputs[i][sample] = ir::to_f32(ir::canonical(results[i]));
@@ -144,12 +84,6 @@ class InterpretedKernel final : public Kernel {
   }
 
  private:
-  // The first failure of a run is the one reported.
-  static void fail(RunStatus& status, std::int32_t check, std::uint32_t sample) {
-    std::int32_t none = -1;
-    if (status.failed_check.compare_exchange_strong(none, check)) status.failed_sample = sample;
-  }
-
   std::shared_ptr<const passes::SplitModule> split_;
   OperationCounter* counter_;
 };

@@ -78,6 +78,8 @@ struct CodegenOptions {
   int width = 0;    // 1, 4, 8, 16, 32; 0: what this processor does best with this program
   std::string cpu;  // a name of codegen/target.h; empty: this processor
   bool optimize = true;
+  bool compile_frame = false;  // the frame function as well, at once; else it is interpreted until
+                               // compiling it pays
   std::filesystem::path cache;  // folder of compiled kernels by content; empty: none
 };
 

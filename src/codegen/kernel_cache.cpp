@@ -1,4 +1,4 @@
-// One file per kernel: a line that says what it is, the hash of what follows, the object. Written
+// One file per kernel: a line that says what it is, the hash of what follows, the objects. Written
 // under a name of its own and renamed, so a reader sees a whole file or none. The time of last use
 // is the file's time; the oldest go first.
 #include "codegen/kernel_cache.h"
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view mark = "pse kernel 1\n";
+constexpr std::string_view mark = "pse kernel 2\n";
 constexpr std::string_view extension = ".kernel";
 
 std::string digest(std::string_view object) {

@@ -19,6 +19,7 @@ class KernelCache {
   explicit KernelCache(std::filesystem::path folder, std::uintmax_t limit = default_limit)
       : folder_(std::move(folder)), limit_(limit) {}
 
+  bool keeps() const { return !folder_.empty(); }
   std::optional<std::string> find(const Hash128& key) const;
   // Failure to write is no error: the next run compiles again.
   void keep(const Hash128& key, const std::string& object) const;

@@ -87,6 +87,7 @@ void compare(const passes::SplitModule& split, const Machine& machine, bool opti
   options.cpu = machine.cpu;
   options.width = machine.width;
   options.optimize = optimize;
+  options.compile_frame = seed % 4 != 0;  // else interpreted, as a short frame is
   const auto kernel = compile_kernel(split, options);
   ASSERT_TRUE(kernel) << kernel.error();
   const auto shared = std::make_shared<const passes::SplitModule>(split);

@@ -109,8 +109,12 @@ std::string check_program(std::uint64_t seed) {
   for (std::size_t w = 0; w < std::size(widths); ++w) {
     if (!large && seed % std::size(widths) != w) continue;
     const int width = widths[w];
-    const auto kernel =
-        compile_kernel(*optimised->split, {.width = width, .cpu = {}, .optimize = seed % 8 < 4, .cache = {}});
+    const CodegenOptions options{.width = width,
+                                 .cpu = {},
+                                 .optimize = seed % 8 < 4,
+                                 .compile_frame = seed % 3 != 0,  // else interpreted, as short frames are
+                                 .cache = {}};
+    const auto kernel = compile_kernel(*optimised->split, options);
     if (!kernel) return fail(kernel.error());
     if (const std::string d = difference(expected, run(**kernel, optimised->module(), seed)); !d.empty())
       return fail("width " + std::to_string(width) + " differs: " + d);

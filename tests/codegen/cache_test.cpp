@@ -175,16 +175,20 @@ TEST(CodeObject, DamagedObjectsAreHandled) {
   const std::string object =
       text.str().substr(text.str().find("\x7f"
                                         "ELF"));
-  ASSERT_TRUE(CodeObject::load(std::as_bytes(std::span(object))));
+  const auto load = [](std::span<const char> bytes) {
+    const std::span<const std::byte> one[] = {std::as_bytes(bytes)};
+    return CodeObject::load(one).has_value();
+  };
+  ASSERT_TRUE(load(object));
   for (std::size_t at = 0; at < object.size(); ++at) {
     for (const int flip : {1, 0x80, 0xff}) {
       std::string bad = object;
       bad[at] = static_cast<char>(bad[at] ^ flip);
-      static_cast<void>(CodeObject::load(std::as_bytes(std::span(bad))));
+      static_cast<void>(load(bad));
     }
   }
   for (std::size_t length = 0; length < object.size(); length += 7) {
-    static_cast<void>(CodeObject::load(std::as_bytes(std::span(object).first(length))));
+    static_cast<void>(load(std::span(object).first(length)));
   }
 }
 

@@ -86,11 +86,12 @@ inline std::vector<Machine> all_machines() {
 using Columns = std::vector<std::vector<float>>;
 
 inline std::unique_ptr<Kernel> compile(const TestProgram& program, const Machine& machine,
-                                       bool optimize = true) {
+                                       bool optimize = true, bool compile_frame = true) {
   CodegenOptions options;
   options.width = machine.width;
   options.cpu = machine.cpu;
   options.optimize = optimize;
+  options.compile_frame = compile_frame;
   auto kernel = compile_kernel(program.split, options);
   if (!kernel) {
     ADD_FAILURE() << kernel.error();

@@ -232,20 +232,22 @@ TEST_P(Memory, FrameArraysAndSlots) {
   program.output(b.emit(Op::input, {}, 2));
   program.output_int(b.emit(Op::f2bits, {b.emit(Op::input, {}, 3)}));
   program.output(b.emit(Op::array_load, {j}, 0, 0));
-  const auto kernel = compile(program, GetParam());
-  ASSERT_TRUE(kernel);
-  Runner once;
-  const Columns out = once(*kernel, module, {0, 42}, {counting(9, -2)}, 9);
-  for (int s = 0; s < 9; ++s) {
-    EXPECT_EQ(out[0][s], s == 2 ? 42.0f : 0.0f);
-    EXPECT_EQ(out[1][s], s == 4 ? 5.0f : 0.0f);
-    EXPECT_EQ(out[2][s], 5.0f);
-    EXPECT_EQ(out[3][s], 0.0f);
-    EXPECT_EQ(out[4][s], 3.0f);
-    EXPECT_EQ(out[5][s], 43.0f);
-    EXPECT_EQ(out[6][s], static_cast<float>(0x7f81));  // integers keep their bits in a slot
-    EXPECT_EQ(out[7][s], static_cast<float>(0x2345));
-    EXPECT_EQ(out[8][s], 0.0f);
+  for (const bool compile_frame : {true, false}) {
+    const auto kernel = compile(program, GetParam(), true, compile_frame);
+    ASSERT_TRUE(kernel);
+    Runner once;
+    const Columns out = once(*kernel, module, {0, 42}, {counting(9, -2)}, 9);
+    for (int s = 0; s < 9; ++s) {
+      EXPECT_EQ(out[0][s], s == 2 ? 42.0f : 0.0f);
+      EXPECT_EQ(out[1][s], s == 4 ? 5.0f : 0.0f);
+      EXPECT_EQ(out[2][s], 5.0f);
+      EXPECT_EQ(out[3][s], 0.0f);
+      EXPECT_EQ(out[4][s], 3.0f);
+      EXPECT_EQ(out[5][s], 43.0f);
+      EXPECT_EQ(out[6][s], static_cast<float>(0x7f81));  // integers keep their bits in a slot
+      EXPECT_EQ(out[7][s], static_cast<float>(0x2345));
+      EXPECT_EQ(out[8][s], 0.0f);
+    }
   }
 }
 

@@ -28,10 +28,10 @@ namespace {
 using namespace pse;
 namespace fs = std::filesystem;
 
-// Milliseconds of one compilation by the clock; of all its threads together; and of a second
-// compilation in the same process.
+// Milliseconds of one compilation by the clock; of its longest thread, which is what the clock says
+// on a machine with nothing else to do; and of all its threads together.
 struct Sample {
-  double front = 0, passes = 0, codegen = 0, work = 0, second = 0;
+  double front = 0, passes = 0, codegen = 0, path = 0, work = 0;
   int instructions = 0, width = 0;
   int agrees = 0;
   double first() const { return front + passes + codegen; }
@@ -107,19 +107,20 @@ bool agree(const Program& a, const Program& b) {
   return true;
 }
 
-double process_ms() {
+double ms_of(clockid_t clock) {
   timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  clock_gettime(clock, &t);
   return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
 }
 
 Sample measure_here(const fs::path& path, bool check) {
   Sample sample;
-  const double start = process_ms();
+  const double work = ms_of(CLOCK_PROCESS_CPUTIME_ID), own = ms_of(CLOCK_THREAD_CPUTIME_ID);
   const auto program = compile_file(path, false);
-  sample.work = process_ms() - start;
   if (!program) return sample;
   const CompileTimes& t = program->times;
+  sample.work = ms_of(CLOCK_PROCESS_CPUTIME_ID) - work;
+  sample.path = ms_of(CLOCK_THREAD_CPUTIME_ID) - own + t.behind * 1e3;
   sample.front = (t.parse + t.lower) * 1e3;
   sample.passes = t.passes * 1e3;
   sample.codegen = t.codegen * 1e3;
@@ -129,9 +130,6 @@ Sample measure_here(const fs::path& path, bool check) {
   if (check) {
     const auto meaning = compile_file(path, true);
     sample.agrees = meaning && agree(*program, *meaning);
-  } else {
-    const CompileTimes again = compile_file(path, false)->times;
-    sample.second = (again.parse + again.lower + again.passes + again.codegen) * 1e3;
   }
   return sample;
 }
@@ -163,8 +161,8 @@ int run(int runs, const std::vector<std::string>& words) {
   for (const auto& entry : fs::recursive_directory_iterator(PSE_GALLERY))
     if (entry.path().extension() == ".pse") files.push_back(entry.path());
   std::ranges::sort(files);
-  std::printf("%-40s %6s %5s %7s %7s %8s %8s  %-16s %8s %8s\n", "milliseconds, medians", "ops",
-              "lanes", "front", "passes", "codegen", "first", "quartiles", "work", "second");
+  std::printf("%-40s %6s %5s %7s %7s %8s %8s  %-16s %8s %8s %8s\n", "milliseconds, medians", "ops",
+              "lanes", "front", "passes", "codegen", "first", "quartiles", "path", "least", "work");
   int wrong = 0, skipped = 0;
   double worst = 0;
   for (const fs::path& file : files) {
@@ -188,18 +186,19 @@ int run(int runs, const std::vector<std::string>& words) {
       for (const Sample& s : samples) values.push_back(value(s));
       return values;
     };
+    const auto path = column([](const Sample& sample) { return sample.path; });
     const auto total = column([](const Sample& s) { return s.first(); });
     const auto middle = [&](double Sample::*member) {
       return at(column([&](const Sample& s) { return s.*member; }), 0.5);
     };
-    std::printf("%-40s %6d %5d %7.2f %7.2f %8.2f %8.2f  [%.1f .. %.1f] %10.2f %8.2f\n",
+    std::printf("%-40s %6d %5d %7.2f %7.2f %8.2f %8.2f  [%.1f .. %.1f] %10.2f %8.2f %8.2f\n",
                 name.c_str(), first.instructions, first.width, middle(&Sample::front),
                 middle(&Sample::passes), middle(&Sample::codegen), at(total, 0.5), at(total, 0.25),
-                at(total, 0.75), middle(&Sample::work), middle(&Sample::second));
+                at(total, 0.75), middle(&Sample::path), at(path, 0), middle(&Sample::work));
     std::fflush(stdout);
-    worst = std::max(worst, at(total, 0.5));
+    worst = std::max(worst, at(path, 0.5));
   }
-  std::printf("slowest %.1f ms (goal: 50); %d programs need inputs that are not at hand\n", worst,
+  std::printf("longest path %.1f ms (goal: 50); %d programs need inputs that are not at hand\n", worst,
               skipped);
   return wrong != 0;
 }

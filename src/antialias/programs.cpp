@@ -33,6 +33,7 @@ std::expected<Programs, std::string> compile_programs(CompiledFront front,
 
   // Decisions are those of what the outputs need.
   CompiledFront copy = front;
+  copy.calls.clear();
   passes::remove_dead(copy.module);
   const Decisions decisions = find_decisions(copy.module);
   if (!decisions.any) return finish(std::move(front));

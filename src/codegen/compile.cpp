@@ -1,5 +1,8 @@
 // From a SplitModule to a kernel: the cache first, LLVM only if that has nothing.
 // The whole of code generation reads here.
+#include <time.h>
+
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <thread>
@@ -76,20 +79,30 @@ int pieces_of(const BackendRequest& request) {
   return ir::count_instructions(module) - frame > large ? 2 : 1;
 }
 
-std::expected<std::string, std::string> make_objects(BackendRequest request) {
+double thread_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+std::expected<std::string, std::string> make_objects(BackendRequest request, double& behind) {
   request.pieces = pieces_of(request);
+  std::vector<double> seconds(static_cast<std::size_t>(request.pieces));
   std::vector<std::expected<std::string, std::string>> made(
       static_cast<std::size_t>(request.pieces));
   const auto make = [&](int piece) {
     BackendRequest mine = request;
     mine.piece = piece;
+    const double start = thread_seconds();
     made[static_cast<std::size_t>(piece)] = run_backend(mine);
+    seconds[static_cast<std::size_t>(piece)] = thread_seconds() - start;
   };
   {
     std::vector<std::jthread> others;
     for (int piece = 1; piece < request.pieces; ++piece) others.emplace_back(make, piece);
     make(0);
   }
+  behind = std::ranges::max(seconds) - seconds[0];
   std::vector<std::string> objects;
   for (auto& object : made) {
     if (!object) return std::unexpected(object.error());
@@ -101,20 +114,22 @@ std::expected<std::string, std::string> make_objects(BackendRequest request) {
 struct Made {
   CodeObject code;
   bool from_cache = false;
+  double behind = 0;
 };
 
 // The code of one entry point.
 std::expected<Made, std::string> code_of(const BackendRequest& request, const KernelCache& cache) {
   const Hash128 key = cache.keeps() ? key_of(request) : Hash128{};
   if (const auto cached = cache.find(key)) {
-    if (auto code = CodeObject::load(unbundle(*cached))) return Made{std::move(*code), true};
+    if (auto code = CodeObject::load(unbundle(*cached))) return Made{std::move(*code), true, 0};
   }
-  const auto objects = make_objects(request);
+  double behind = 0;
+  const auto objects = make_objects(request, behind);
   if (!objects) return std::unexpected(objects.error());
   auto code = CodeObject::load(unbundle(*objects));
   if (!code) return std::unexpected(code.error());
   cache.keep(key, *objects);
-  return Made{std::move(*code), false};
+  return Made{std::move(*code), false, behind};
 }
 
 }  // namespace
@@ -149,6 +164,7 @@ std::expected<std::unique_ptr<Kernel>, std::string> compile_kernel(const passes:
   if (stats) {
     stats->seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    stats->behind = made->behind;
     stats->from_cache = made->from_cache;
     stats->width = request->width;
     stats->cpu = request->target->name;

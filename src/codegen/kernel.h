@@ -85,6 +85,7 @@ struct CodegenOptions {
 
 struct CodegenStats {
   double seconds = 0;
+  double behind = 0;  // seconds of work by which the slowest piece exceeds the calling thread's own
   bool from_cache = false;
   int width = 0;
   std::string cpu;

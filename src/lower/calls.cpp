@@ -142,6 +142,7 @@ Typed Lowering::call_user(const FunctionRef& function, std::vector<CallArgument>
     }
   }
   call_ = &inner;
+  const auto first = static_cast<ir::Value>(builder_->function().values.size());
   const int outer_loops = std::exchange(loop_depth_, 0);
   Typed result{.kind = Kind::nothing, .parts = {}, .text = {}, .function = {}};
   const auto leave = [&] {
@@ -166,6 +167,9 @@ Typed Lowering::call_user(const FunctionRef& function, std::vector<CallArgument>
   }
   if (const auto found = inner.variables.find("%result"); found != inner.variables.end())
     result = found->second;
+  const auto callee = static_cast<std::uint32_t>(callees_.size());
+  const auto end = static_cast<ir::Value>(builder_->function().values.size());
+  ranges_.push_back({callees_.try_emplace(&definition, callee).first->second, first, end});
   leave();
   return result;
 }

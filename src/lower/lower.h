@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "diag/diagnostics.h"
+#include "ir/call_range.h"
 #include "ir/module.h"
 #include "lang/ast.h"
 
@@ -65,6 +66,7 @@ struct Lowered {
   std::vector<Knob> knobs;  // all of the program's, read or not, in order of appearance
   std::vector<ProgramOutput> outputs;
   std::vector<std::string> reads;  // stream names read
+  std::vector<ir::CallRange> calls;  // the functions of the language that were written into the program
 };
 
 // Errors go to `diagnostics`; the result is meaningful only when there are none.

@@ -270,6 +270,7 @@ Lowered Lowering::run(const Program& program) {
   result.module = std::move(module_);
   result.knobs = std::move(knobs_);
   result.reads = std::move(reads_);
+  result.calls = std::move(ranges_);
   return result;
 }
 

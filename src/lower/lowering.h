@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "ir/builder.h"
@@ -180,6 +181,8 @@ class Lowering {
   std::vector<Knob> knobs_;
   std::map<std::string, std::size_t> knob_of_;
   std::map<std::string, std::int32_t> inputs_;
+  std::vector<ir::CallRange> ranges_;  // where calls were written
+  std::unordered_map<const lang::FunctionStmt*, std::uint32_t> callees_;  // numbers for `ranges_`
   std::vector<std::string> reads_;
   std::map<std::string, Span> set_at_top_;  // outputs in the making: name -> last place
   std::vector<std::string> output_order_;

@@ -10,6 +10,17 @@
 
 namespace pse::passes {
 
+// outline.cpp: in large programs, copies of a called function that are alike become one function.
+// `calls` are those of the entry function.
+struct OutlineOptions {
+  std::size_t min_total = 900;  // instructions of the program
+  std::size_t min_size = 60;    // of a copy
+  std::size_t min_saved = 150;  // of all copies but one
+  std::size_t max_parameters = 24, max_results = 16;
+};
+void outline(ir::Module& module, const std::vector<ir::CallRange>& calls,
+             const OutlineOptions& options = {});
+
 // inline_calls.cpp: copies called functions into their callers.
 struct InlineOptions {
   std::size_t small = 40;           // functions up to this many instructions, always

@@ -19,6 +19,8 @@ SplitModule run_pipeline(ir::Module module, const PipelineOptions& options) {
   if (options.optimize) {
     // What the program does not need, and what it calls.
     run(
+        "outline", [&](ir::Module& m) { outline(m, options.calls); }, module);
+    run(
         "remove-dead", [](ir::Module& m) { remove_dead(m); }, module);
     run(
         "inline", [](ir::Module& m) { inline_calls(m); }, module);

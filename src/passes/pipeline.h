@@ -4,7 +4,9 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "ir/call_range.h"
 #include "ir/module.h"
 
 namespace pse::passes {
@@ -24,6 +26,8 @@ struct SplitModule {
 
 struct PipelineOptions {
   bool optimize = true;  // off: only what correctness needs (rates, split)
+  // The calls that were written into the entry function; none: copies stay as they are.
+  std::vector<ir::CallRange> calls;
   // Called after each pass with its name and the module, for --emit and tests.
   std::function<void(std::string_view pass, const ir::Module&)> after_pass;
 };

@@ -45,6 +45,7 @@ std::optional<CompiledFront> compile_front(SourceMap& sources, FileId file, cons
   front.program.outputs = std::move(lowered.outputs);
   front.program.reads = std::move(lowered.reads);
   front.module = std::move(lowered.module);
+  front.calls = std::move(lowered.calls);
   if (options.after_pass) options.after_pass("lower", front.module);
   return front;
 }
@@ -56,6 +57,7 @@ std::expected<std::shared_ptr<const Program>, std::string> compile_back(
 
   // IR to IR.
   const passes::PipelineOptions pipeline{.optimize = options.optimize,
+                                         .calls = std::move(front.calls),
                                          .after_pass = options.after_pass};
   program->split = std::make_shared<const passes::SplitModule>(
       passes::run_pipeline(std::move(front.module), pipeline));
@@ -70,6 +72,7 @@ std::expected<std::shared_ptr<const Program>, std::string> compile_back(
     if (!kernel) return std::unexpected(kernel.error());
     program->kernel = std::move(*kernel);
     program->times.from_cache = stats.from_cache;
+    program->times.behind = stats.behind;
   }
   program->times.codegen = clock.lap();
   return program;

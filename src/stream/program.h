@@ -23,6 +23,7 @@ struct CompileOptions {
 
 struct CompileTimes {
   double parse = 0, lower = 0, passes = 0, codegen = 0;  // seconds
+  double behind = 0;  // CodegenStats::behind
   bool from_cache = false;
 };
 
@@ -46,6 +47,7 @@ std::shared_ptr<const Program> compile(SourceMap& sources, FileId file, const Lo
 struct CompiledFront {
   Program program;  // without split and kernel
   ir::Module module;
+  std::vector<ir::CallRange> calls;  // in `module`; to be cleared where that is rewritten
 };
 std::optional<CompiledFront> compile_front(SourceMap& sources, FileId file, const LowerHost& host,
                                            const CompileOptions& options, Diagnostics& diagnostics);

@@ -198,8 +198,8 @@ int run(int runs, const std::vector<std::string>& words) {
     std::fflush(stdout);
     worst = std::max(worst, at(path, 0.5));
   }
-  std::printf("longest path %.1f ms (goal: 50); %d programs need inputs that are not at hand\n", worst,
-              skipped);
+  std::printf("longest path %.1f ms (goal: 50); %d programs need inputs that are not at hand\n",
+              worst, skipped);
   return wrong != 0;
 }
 

@@ -19,7 +19,8 @@ std::string emit_stage(const std::string& stage, ProgramFile& program, const Low
   if (diagnostics.has_errors()) return {};
   if (stage == "ir") return ir::print(lowered.module);
   const passes::SplitModule split =
-      passes::run_pipeline(std::move(lowered.module), {.optimize = options.optimize});
+      passes::run_pipeline(std::move(lowered.module), {.optimize = options.optimize,
+                                                       .calls = std::move(lowered.calls)});
   if (stage == "opt") return ir::print(split.module);
 
   // What LLVM makes of it.

@@ -37,7 +37,9 @@ ProgramInfo examine_program(const std::string& name, Session& session) {
                    {}};
   count_written("lower", lowered.module, info.operations);
   const passes::PipelineOptions pipeline{
-      .optimize = true, .after_pass = [&](std::string_view pass, const ir::Module& module) {
+      .optimize = true,
+      .calls = std::move(lowered.calls),
+      .after_pass = [&](std::string_view pass, const ir::Module& module) {
         count_written(pass, module, info.operations);
       }};
   count_compiled(passes::run_pipeline(std::move(lowered.module), pipeline), info.operations);

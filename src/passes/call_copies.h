@@ -18,11 +18,11 @@ struct CallCopy {
   ir::CallRange values;
   ir::Region* region = nullptr;
   std::size_t from = 0, to = 0;
-  std::size_t size = 0;                 // instructions that are no leaves
-  std::vector<std::int64_t> shape;      // equal for copies that are alike
-  std::vector<ir::Value> outside;       // operands from outside, and leaves, as they occur
-  std::vector<ir::Value> defined;       // what the instructions define, in order
-  std::vector<std::size_t> live;        // of `defined`: used behind the copy
+  std::size_t size = 0;             // instructions that are no leaves
+  std::vector<std::int64_t> shape;  // equal for copies that are alike
+  std::vector<ir::Value> outside;   // operands from outside, and leaves, as they occur
+  std::vector<ir::Value> defined;   // what the instructions define, in order
+  std::vector<std::size_t> live;    // of `defined`: used behind the copy
 };
 
 // A function's values: which are leaves, where they are defined, how often used.

@@ -62,7 +62,8 @@ class Inliner {
   bool is_wanted(std::size_t callee) const {
     if (total_ + sizes_[callee] > options_.max_total) return false;
     return sizes_[callee] <= options_.small ||
-           (sites_[callee] == 1 && sizes_[callee] <= options_.single);
+           (sites_[callee] == 1 && sizes_[callee] <= options_.single &&
+            callee < options_.first_kept);
   }
 
   void inline_in(Function& function, Region& region, Renaming& renaming) {

@@ -33,11 +33,18 @@ class Outliner {
       const std::vector<CallRange>& calls) {
     for (const CallRange& call : calls) {
       auto copy = body_.find(call);
-      if (copy && copy->size >= options_.min_size) copies_.push_back(std::move(*copy));
+      // A single instruction is a call already, or not worth one.
+      if (copy && copy->size > 1 && copy->size >= options_.min_size)
+        copies_.push_back(std::move(*copy));
     }
     // What saves most comes first; what overlaps it has its turn in the next round.
     std::map<std::vector<std::int64_t>, std::vector<const CallCopy*>> by_shape;
-    for (const CallCopy& copy : copies_) by_shape[copy.shape].push_back(&copy);
+    for (const CallCopy& copy : copies_) {
+      // A function that only calls another is the same copy twice.
+      auto& group = by_shape[copy.shape];
+      const auto same = [&](const CallCopy* other) { return overlap(*other, copy); };
+      if (std::ranges::none_of(group, same)) group.push_back(&copy);
+    }
     std::vector<std::vector<const CallCopy*>> groups;
     for (auto& [shape, group] : by_shape) groups.push_back(std::move(group));
     std::ranges::stable_sort(groups, std::greater(), &Outliner::saved);
@@ -45,6 +52,7 @@ class Outliner {
       std::erase_if(group, [&](const CallCopy* copy) { return is_covered(*copy); });
       if (saved(group) >= options_.min_saved) share(group);
     }
+    cut();
     apply();
     return std::move(made_);
   }
@@ -55,15 +63,34 @@ class Outliner {
     std::vector<Instruction> by;
   };
 
+  // Where a function is still too large to compile beside the others, some of its calls leave it
+  // although they are one of a kind.
+  void cut() {
+    std::size_t size = ir::count_instructions(module_.functions[index_]);
+    for (const CallCopy* copy : taken_) size -= std::min(size, copy->size);
+    std::vector<std::vector<const CallCopy*>> singles;
+    for (const CallCopy& copy : copies_) singles.push_back({&copy});
+    std::ranges::stable_sort(singles, std::greater(), [](const auto& one) { return one[0]->size; });
+    for (const auto& one : singles) {
+      const std::size_t copy = one[0]->size;
+      if (size <= options_.max_function || copy < options_.min_cut) return;
+      if (copy > options_.max_function || is_covered(*one[0])) continue;
+      share(one);
+      size -= copy;
+    }
+  }
+
   static std::size_t saved(const std::vector<const CallCopy*>& group) {
     return group.size() < 2 ? 0 : (group.size() - 1) * group.front()->size;
   }
 
+  static bool overlap(const CallCopy& a, const CallCopy& b) {
+    return std::max(a.values.first, b.values.first) < std::min(a.values.end, b.values.end);
+  }
+
   bool is_covered(const CallCopy& copy) const {
-    return std::ranges::any_of(taken_, [&](const CallCopy* outer) {
-      return std::max(outer->values.first, copy.values.first) <
-             std::min(outer->values.end, copy.values.end);
-    });
+    return std::ranges::any_of(taken_,
+                               [&](const CallCopy* other) { return overlap(*other, copy); });
   }
 
   // What the operands that come from outside are, in one copy after the other.
@@ -94,7 +121,7 @@ class Outliner {
 
     // Parameters: what comes from outside, unless it is the same constant everywhere.
     Function made;
-    made.name = "copies." + std::to_string(module_.functions.size());
+    made.name = "copies." + std::to_string(module_.functions.size() + pending_.size());
     CopyWriter writer(module_.functions[index_], made);
     std::map<Source, Value> sources;
     std::vector<std::size_t> parameters;  // the slot that each comes from
@@ -188,11 +215,29 @@ class Outliner {
   std::vector<std::pair<std::size_t, std::vector<CallRange>>> made_;
 };
 
+// Checks of what is known to be true.
+void drop_passed_checks(Region& region, std::vector<bool>& is_true) {
+  std::erase_if(region.body, [&](const Instruction& in) {
+    if (in.op == ir::Op::const_bool) is_true[in.result()] = in.imm != 0;
+    return in.op == ir::Op::check && is_true[in.operands[0]];
+  });
+  for (Instruction& in : region.body)
+    for (Region& inner : in.regions) drop_passed_checks(inner, is_true);
+}
+
 }  // namespace
 
-void outline(ir::Module& module, const std::vector<CallRange>& calls,
-             const OutlineOptions& options) {
-  if (ir::count_instructions(module.main()) < options.min_total) return;
+std::size_t outline(ir::Module& module, const std::vector<CallRange>& calls,
+                    const OutlineOptions& options) {
+  const std::size_t before = module.functions.size();
+  if (ir::count_instructions(module.main()) < options.min_total) return before;
+  // What can fail stays where it is, so whatever cannot is found out first.
+  decide(module);
+  for (Function& function : module.functions) {
+    std::vector<bool> is_true(function.values.size());
+    drop_passed_checks(function.body, is_true);
+  }
+  remove_dead(module, {.functions = false});
   std::vector<std::pair<std::size_t, std::vector<CallRange>>> work = {{module.entry, calls}};
   while (!work.empty()) {
     auto [function, inside] = std::move(work.back());
@@ -202,6 +247,7 @@ void outline(ir::Module& module, const std::vector<CallRange>& calls,
     work.emplace_back(function, std::move(inside));  // larger copies may be alike now
     std::ranges::move(made, std::back_inserter(work));
   }
+  return before;
 }
 
 }  // namespace pse::passes

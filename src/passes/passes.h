@@ -11,21 +11,17 @@
 namespace pse::passes {
 
 // outline.cpp: in large programs, copies of a called function that are alike become one function.
-// `calls` are those of the entry function.
-struct OutlineOptions {
-  std::size_t min_total = 900;  // instructions of the program
-  std::size_t min_size = 60;    // of a copy
-  std::size_t min_saved = 150;  // of all copies but one
-  std::size_t max_parameters = 24, max_results = 16;
-};
-void outline(ir::Module& module, const std::vector<ir::CallRange>& calls,
-             const OutlineOptions& options = {});
+// `calls` are those of the entry function. Returns the index of the first function made.
+// pipeline.h has the options.
+std::size_t outline(ir::Module& module, const std::vector<ir::CallRange>& calls,
+                    const OutlineOptions& options = {});
 
 // inline_calls.cpp: copies called functions into their callers.
 struct InlineOptions {
   std::size_t small = 40;           // functions up to this many instructions, always
   std::size_t single = 1u << 20;    // functions with one call site, up to this many
   std::size_t max_total = 600'000;  // no more once the module has this many
+  std::size_t first_kept = ~std::size_t{0};  // functions from this one on: only where small
 };
 void inline_calls(ir::Module& module, const InlineOptions& options = {});
 

@@ -19,11 +19,12 @@ SplitModule run_pipeline(ir::Module module, const PipelineOptions& options) {
   if (options.optimize) {
     // What the program does not need, and what it calls.
     run(
-        "outline", [&](ir::Module& m) { outline(m, options.calls); }, module);
-    run(
         "remove-dead", [](ir::Module& m) { remove_dead(m); }, module);
+    InlineOptions inlining;
     run(
-        "inline", [](ir::Module& m) { inline_calls(m); }, module);
+        "outline", [&](ir::Module& m) { inlining.first_kept = outline(m, options.calls, options.outline); }, module);
+    run(
+        "inline", [&](ir::Module& m) { inline_calls(m, inlining); }, module);
     // Twice: selects made from ifs, and loops that fell away, show new constants.
     for (int round = 0; round < 2; ++round) {
       run("fold", fold, module);

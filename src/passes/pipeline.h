@@ -24,10 +24,21 @@ struct SplitModule {
   std::uint32_t first_slot = 0;  // input index
 };
 
+// When the copies of a called function become one function again (outline.cpp); in instructions.
+struct OutlineOptions {
+  std::size_t min_total = 900;  // of the program
+  std::size_t min_size = 60;    // of a copy
+  std::size_t min_saved = 150;  // of all copies but one
+  std::size_t max_parameters = 24, max_results = 16;
+  std::size_t max_function = 1500;  // larger ones lose calls, of at least min_cut
+  std::size_t min_cut = 250;
+};
+
 struct PipelineOptions {
   bool optimize = true;  // off: only what correctness needs (rates, split)
   // The calls that were written into the entry function; none: copies stay as they are.
   std::vector<ir::CallRange> calls;
+  OutlineOptions outline;
   // Called after each pass with its name and the module, for --emit and tests.
   std::function<void(std::string_view pass, const ir::Module&)> after_pass;
 };

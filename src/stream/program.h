@@ -18,6 +18,7 @@ struct CompileOptions {
   CodegenOptions codegen;
   bool interpret = false;  // run by the interpreter instead of compiled code
   bool optimize = true;
+  passes::OutlineOptions outline;
   std::function<void(std::string_view pass, const ir::Module&)> after_pass;
 };
 

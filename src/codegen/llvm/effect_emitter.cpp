@@ -50,10 +50,12 @@ void FunctionEmitter::emit_call(const ir::Instruction& in) {
   }
   const auto index = static_cast<std::uint32_t>(in.imm);
   const unsigned lanes = wide ? lanes_ : 1;
+  if (wide) shape = parent_.shape_of(index);
   llvm::Function* callee = parent_.called_function(index, shape, lanes);
   std::vector<llvm::Value*> arguments = {call_};
   if (parent_.takes_mask(index, lanes)) arguments.push_back(mask_ ? mask_ : all_lanes());
-  for (const ir::Value value : in.operands) arguments.push_back(get(value));
+  for (std::size_t i = 0; i < in.operands.size(); ++i)
+    arguments.push_back(get_as(in.operands[i], shape[i]));
   llvm::CallInst* result = b_.CreateCall(callee, arguments);
   result->setCallingConv(callee->getCallingConv());
   for (std::size_t i = 0; i < in.results.size(); ++i) {

@@ -40,8 +40,11 @@ class ModuleEmitter {
                                   unsigned lanes);
   // Whether a function does anything that depends on which lanes are active.
   bool takes_mask(std::uint32_t index, unsigned lanes) const;
+  // Which parameters vary in any of the calls with varying arguments: one body serves all.
+  const std::vector<bool>& shape_of(std::uint32_t index) const { return shapes_[index]; }
 
  private:
+  void find_shapes(const ir::Function& function, const Uniformity& uniformity);
   llvm::Function* add_function(llvm::FunctionType* type, const std::string& name, bool external);
 
   llvm::Module& out_;
@@ -49,6 +52,7 @@ class ModuleEmitter {
   const passes::SplitModule& split_;
   const Target& target_;
   unsigned width_;
+  std::vector<std::vector<bool>> shapes_;  // per function of the IR
   std::map<llvm::Constant*, llvm::Value*> data_;
   std::map<std::pair<std::uint32_t, std::vector<bool>>, llvm::Function*> called_;
 };

@@ -21,7 +21,8 @@ ModuleEmitter::ModuleEmitter(llvm::Module& out, const BackendRequest& request)
       ir_(request.split->module),
       split_(*request.split),
       target_(*request.target),
-      width_(static_cast<unsigned>(request.width)) {}
+      width_(static_cast<unsigned>(request.width)),
+      shapes_(ir_.functions.size()) {}
 
 llvm::Type* ModuleEmitter::type_of(ir::Type type, unsigned lanes) {
   llvm::LLVMContext& context = out_.getContext();
@@ -59,9 +60,34 @@ llvm::Function* ModuleEmitter::add_function(llvm::FunctionType* type, const std:
   return function;
 }
 
+// Calls of callers first, so that a function's own shape is known before its calls are looked at;
+// where it grows later, they are looked at again.
+void ModuleEmitter::find_shapes(const ir::Function& function, const Uniformity& uniformity) {
+  std::vector<const ir::Region*> regions = {&function.body};
+  while (!regions.empty()) {
+    const ir::Region& region = *regions.back();
+    regions.pop_back();
+    for (const ir::Instruction& in : region.body) {
+      for (const ir::Region& inner : in.regions) regions.push_back(&inner);
+      if (in.op != ir::Op::call) continue;
+      const auto varies = [&](ir::Value value) { return uniformity.varying[value]; };
+      if (std::ranges::none_of(in.operands, varies)) continue;
+      const auto callee = static_cast<std::uint32_t>(in.imm);
+      std::vector<bool> shape = shapes_[callee];
+      shape.resize(in.operands.size());
+      for (std::size_t i = 0; i < shape.size(); ++i) shape[i] = shape[i] || varies(in.operands[i]);
+      if (shape == shapes_[callee]) continue;
+      shapes_[callee] = shape;
+      const ir::Function& called = ir_.functions[callee];
+      find_shapes(called, find_uniformity(ir_, called, shape));
+    }
+  }
+}
+
 void ModuleEmitter::emit_samples() {
   const ir::Function& main = ir_.main();
   Uniformity uniformity = width_ == 1 ? all_uniform(main) : find_uniformity(ir_, main, {});
+  find_shapes(main, uniformity);
   llvm::Function* out = add_function(entry_type(out_.getContext()), samples_symbol, true);
   FunctionEmitter(*this, main, std::move(uniformity), width_, out).emit_sample_loop(ir_.outputs);
 }

@@ -57,7 +57,6 @@ std::expected<std::shared_ptr<const Program>, std::string> compile_back(
 
   // IR to IR.
   const passes::PipelineOptions pipeline{.optimize = options.optimize,
-  const passes::PipelineOptions pipeline{.optimize = options.optimize,
                                          .calls = std::move(front.calls),
                                          .outline = options.outline,
                                          .after_pass = options.after_pass};

@@ -12,8 +12,10 @@ namespace {
 
 // Places handed to the program at once.
 constexpr std::size_t most_places = 1 << 14;
-// So many samples tell whether a pixel needs the others.
+// So many samples tell whether a pixel needs the others: where they spread over less than
+// mean_per_range times what can be seen, their mean is near enough.
 constexpr std::uint32_t first_look = 16;
+constexpr float mean_per_range = 12;
 
 }  // namespace
 
@@ -47,7 +49,7 @@ Refined Refiner::sample(std::vector<Pixel> pixels, std::uint32_t first, std::uin
           low = std::min(low, value[k]), high = std::max(high, value[k]);
         }
         result.values[o][i] = sum;
-        if (uneven && differ(low, high)) (*uneven)[i] = true;
+        if (uneven && differ(low, low + (high - low) / mean_per_range)) (*uneven)[i] = true;
       }
   }
   return result;

@@ -7,6 +7,9 @@
 namespace pse::antialias {
 namespace {
 
+// Steps of an output below this, of 1 and of its size, are no edges.
+constexpr float least_step = 0.01f;
+
 bool is_known(const Rect& area, int x, int y) {
   return x >= area.x0 && x < area.x1 && y >= area.y0 && y < area.y1;
 }
@@ -22,8 +25,10 @@ bool jumps(const Tile& tile, int x, int y, int dx, int dy) {
     if (!has_slope) return true;
     const float slope = value[here] - value[tile.at(x - dx, y - dy)];
     const float expected = value[here] + slope;
-    if (!differ(value[there], expected)) continue;
-    if (!(std::abs(value[there] - expected) <= std::abs(slope))) return true;
+    // A step as small as that cannot be told from the texture's own detail.
+    const float least = least_step * (1 + std::max(std::abs(value[here]), std::abs(value[there])));
+    const float step = std::abs(value[there] - expected);
+    if (!(step <= std::max(std::abs(slope), least))) return true;
   }
   return false;
 }

@@ -205,7 +205,7 @@ const std::vector<StreamName>& image_plane_names() {
 
 void set_plane_uniforms(const ir::Module& module, const ImagePlane& plane, FrameState& state) {
   const double pixel_size = 2.0 / plane.height;
-  const std::array<std::pair<std::string_view, double>, 10> values = {
+  const std::array<std::pair<std::string_view, double>, 11> values = {
       {{"frame", plane.frame},
        {"time", plane.frame / plane.fps},
        {"fps", plane.fps},
@@ -215,7 +215,8 @@ void set_plane_uniforms(const ir::Module& module, const ImagePlane& plane, Frame
        {"pixelsize", pixel_size},
        {"pixel_freq", 0.5 / pixel_size},
        {"seed", plane.seed},
-       {"begin_frame", 1}}};
+       {"begin_frame", 1},
+       {"prepass.step", 0}}};
   state.uniforms.resize(module.inputs.size());
   for (std::size_t i = 0; i < module.inputs.size(); ++i) {
     if (module.inputs[i].rate == ir::Rate::sample) continue;

@@ -146,6 +146,12 @@ Exit RenderJob::run_frame(int index, int frame) {
                      [this](std::size_t file, const std::string& name,
                             const image::ImageSpec& spec) { return open_writer(file, name, spec); });
 
+  if (index == 0 && options_.antialias.mode == antialias::Mode::supersample &&
+      antialias().mode == antialias::Mode::none)
+    session_.console.warning(
+        "more samples change nothing here: the program reads stored pixels, which are known at "
+        "their centres only");
+
   // Compute.
   progress_.begin_frame(index, frame);
   TileSource seen;

@@ -92,6 +92,20 @@ TEST_F(Render, DitherIsNoEdge) {
   EXPECT_LT(refined("Edge=1"), 64 * 64 / 4);
 }
 
+TEST_F(Render, SamplesThatStoredPixelsCannotGiveAreSaid) {
+  make_input("in.exr");
+  file("stored.pse", "color = 2 * color\n");
+  file("made.pse", "color = x * white\n");
+  const auto said = [&](std::vector<std::string> words) {
+    words.insert(words.end(), {"-o", "a.exr", "--samples", "4"});
+    const Ended ended = pse(words);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return contains(ended.err, "stored pixels");
+  };
+  EXPECT_TRUE(said({"render", "stored.pse", "in.exr"}));
+  EXPECT_FALSE(said({"render", "made.pse", "--res", "8x8"}));
+}
+
 TEST_F(Render, ImagesComeInAsNamesAndChainThroughPipes) {
   make_input("in.exr");
   file("a.pse", "color = 2 * color\n");

@@ -1,6 +1,6 @@
-// What antialiasing costs and what it is worth: for each program the time per pixel without it, with
-// procedural antialiasing and with 16 samples everywhere; how far each picture is from that of 256
-// samples with the same kernel; and the shares of pixels that were blended and supersampled.
+// What antialiasing costs and what it is worth: for each program the CPU time per pixel without it,
+// with procedural antialiasing and with 16 samples everywhere; how far each picture is from that of
+// 256 samples with the same kernel; and the shares of pixels that were blended and supersampled.
 //
 //   bench_picture [--size N] [--runs N] [--threads N] [--pictures FOLDER] [PROGRAM...]
 //
@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -38,6 +39,13 @@ struct Picture {
   double seconds = 0;
 };
 
+// Of all threads of this process: what a run costs, whatever else the machine does.
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 antialias::Programs compile(const fs::path& file, antialias::Mode mode) {
   std::ifstream stream(file);
   std::stringstream text;
@@ -50,7 +58,8 @@ antialias::Programs compile(const fs::path& file, antialias::Mode mode) {
   auto front = compile_front(sources, sources.add(file.string(), text.str()), LowerHost{}, options,
                              diagnostics);
   if (!front) throw std::runtime_error(print_text(diagnostics, sources, false));
-  auto programs = antialias::compile_programs(std::move(*front), options, mode);
+  auto programs = antialias::compile_programs(std::move(*front), options, mode,
+                                              image_plane_changes(std::nullopt));
   if (!programs) throw std::runtime_error(programs.error());
   if (programs->edges.valid()) programs->edges.wait();  // not part of a picture's time
   return *programs;
@@ -63,9 +72,9 @@ Picture render(const antialias::Programs& programs, const Settings& settings, in
   Picture picture;
   for (auto& values : picture.planes)
     values.resize(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
-  const antialias::Options options{.mode = samples > 0 ? antialias::Mode::supersample
-                                                       : antialias::Mode::procedural,
-                                   .samples = samples > 0 ? samples : 64};
+  const antialias::Options options{
+      .mode = samples > 0 ? antialias::Mode::supersample : antialias::Mode::procedural,
+      .samples = samples > 0 ? samples : 64};
   const antialias::Host host{
       [&](const Program& program) {
         FrameState state;
@@ -86,16 +95,16 @@ Picture render(const antialias::Programs& programs, const Settings& settings, in
                     picture.planes[c].begin() + y * size + view.rect.x0);
   };
   RunStatus status;
-  picture.seconds = antialias::execute(programs, host, options,
-                                       image_plane_source(programs.shown->module(), plane,
-                                                          {-2, -2, size + 2, size + 2}),
-                                       sink,
-                                       {.window = {0, 0, size, size},
-                                        .tile_width = tile,
-                                        .tile_height = tile,
-                                        .threads = settings.threads},
-                                       status, picture.counts)
-                        .seconds;
+  const double start = cpu_seconds();
+  antialias::execute(
+      programs, host, options,
+      image_plane_source(programs.shown->module(), plane, {-2, -2, size + 2, size + 2}), sink,
+      {.window = {0, 0, size, size},
+       .tile_width = tile,
+       .tile_height = tile,
+       .threads = settings.threads},
+      status, picture.counts);
+  picture.seconds = cpu_seconds() - start;
   return picture;
 }
 
@@ -151,9 +160,9 @@ void write_row(const fs::path& file, const std::array<Picture, 4>& pictures, int
           const auto at = static_cast<std::size_t>((y0 + y / zoom) * size + x0 + x / zoom);
           const auto plane = static_cast<std::size_t>(c);
           const float value =
-              panel < 4 ? pictures[static_cast<std::size_t>(panel)].planes[plane][at]
-                        : 8 * std::abs(pictures[1].planes[plane][at] -
-                                       pictures[3].planes[plane][at]);
+              panel < 4
+                  ? pictures[static_cast<std::size_t>(panel)].planes[plane][at]
+                  : 8 * std::abs(pictures[1].planes[plane][at] - pictures[3].planes[plane][at]);
           sheet.pixel(c, panel * (piece * zoom + gap) + x, y) = value;
         }
   if (const auto written = image::write_image(file.string(), sheet); !written)
@@ -202,14 +211,15 @@ double measure(const fs::path& file, const Settings& settings) {
   const double pixels = double(settings.size) * settings.size;
   const Timing none = timing(times[0]), ours = timing(times[1]), many = timing(times[2]);
   const auto& counts = pictures[1].counts;
-  fmt::print("{:<14} {:7.1f} {:7.1f} {:8.1f} {:6.2f} {:4.0f}% {:6.1f} {:9.5f} {:9.5f} {:9.5f} "
-             "{:6.2f}% {:6.2f}%\n",
-             file.stem().string(), none.median / pixels * 1e9, ours.median / pixels * 1e9,
-             many.median / pixels * 1e9, ours.median / none.median,
-             100 * std::hypot(none.spread, ours.spread), many.median / none.median,
-             error(pictures[0], pictures[3]), error(pictures[1], pictures[3]),
-             error(pictures[2], pictures[3]), 100 * double(counts.blended) / pixels,
-             100 * double(counts.supersampled) / pixels);
+  fmt::print(
+      "{:<14} {:7.1f} {:7.1f} {:8.1f} {:6.2f} {:4.0f}% {:6.1f} {:9.5f} {:9.5f} {:9.5f} "
+      "{:6.2f}% {:6.2f}%\n",
+      file.stem().string(), none.median / pixels * 1e9, ours.median / pixels * 1e9,
+      many.median / pixels * 1e9, ours.median / none.median,
+      100 * std::hypot(none.spread, ours.spread), many.median / none.median,
+      error(pictures[0], pictures[3]), error(pictures[1], pictures[3]),
+      error(pictures[2], pictures[3]), 100 * double(counts.blended) / pixels,
+      100 * double(counts.supersampled) / pixels);
   if (!settings.pictures.empty()) {
     fs::create_directories(settings.pictures);
     write_row(settings.pictures / (file.stem().string() + "_compared.png"), pictures,

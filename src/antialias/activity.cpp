@@ -17,9 +17,8 @@ const Active& Activity::of(std::uint32_t index, const std::vector<bool>& paramet
   const auto key = std::pair(index, parameters);
   if (const auto found = known_.find(key); found != known_.end()) return found->second;
   const Function& function = module_.functions[index];
-  Active active{std::vector<bool>(function.values.size()),
-                std::vector<bool>(function.arrays.size()),
-                {}};
+  Active active{
+      std::vector<bool>(function.values.size()), std::vector<bool>(function.arrays.size()), {}};
   for (std::size_t i = 0; i < parameters.size(); ++i)
     if (parameters[i]) active.values[function.body.params[i]] = true;
   while (walk(function, function.body, active)) {

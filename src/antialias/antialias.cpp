@@ -22,6 +22,7 @@ struct Placed {
 
   Placed(const Program& program, const Host& host, RunStatus& status)
       : state(host.state(program)), samples(host.samples(program.module())) {
+    set_even_slopes(program.module(), *samples, state);
     program.kernel->run_frame(state, status);
     runner.emplace(program, state, *samples);
   }
@@ -65,12 +66,13 @@ class Execution {
     supersample_ = antialias_.mode == Mode::supersample;
     apron_ = !procedural_ ? 0 : antialias_.filter.reach() > 1.01f ? 2 : 1;
 
-    const Refiner all(*quiet.runner, nullptr, antialias_, programs_.outputs);
+    std::optional<Refiner> all;
+    if (supersample_) all.emplace(*quiet.runner, nullptr, antialias_, programs_.outputs);
     BatchPlan plan;
     plan.batches = tiling_.count();
-    plan.capacity = (std::min(options_.tile_width, options_.window.width()) + 2 * apron_) *
-                    std::int64_t{std::min(options_.tile_height, options_.window.height()) +
-                                 2 * apron_};
+    plan.capacity =
+        (std::min(options_.tile_width, options_.window.width()) + 2 * apron_) *
+        std::int64_t{std::min(options_.tile_height, options_.window.height()) + 2 * apron_};
     plan.count = [&](std::int64_t tile) { return size_of(area(tile)); };
     plan.fill = [&](std::int64_t tile, std::span<float* const> planes) {
       const Rect rect = area(tile);
@@ -96,10 +98,11 @@ class Execution {
       Tile tile{tiling_.rect(number), area(number), outputs, programs_.outputs};
       if (id != inputs_of.end())
         tile.ids = inputs[static_cast<std::size_t>(id - inputs_of.begin())];
-      if (supersample_) return put(tile, all.supersample(pixels_of(tile.rect), status));
-      if (!procedural_) return;
+      if (!supersample_ && !procedural_) return;
+      const Borrowed work(*this);
+      if (supersample_) return put(tile, all->supersample(pixels_of(tile.rect), *work, status));
       Counts counts;
-      Refined refined = edges().refine(tile, status, counts);
+      const Refined refined = edges().refine(tile, *work, status, counts);
       cut_apron(tile);
       put({tile.rect, tile.rect, outputs, programs_.outputs}, refined);
       const std::lock_guard lock(mutex_);
@@ -192,6 +195,31 @@ class Execution {
     }
   }
 
+  // A thread's memory for one tile; it goes back to the others then.
+  class Borrowed {
+   public:
+    explicit Borrowed(Execution& from) : from_(from) {
+      const std::lock_guard lock(from.mutex_);
+      if (from.works_.empty()) {
+        work_ = std::make_unique<Work>();
+      } else {
+        work_ = std::move(from.works_.back());
+        from.works_.pop_back();
+      }
+    }
+    ~Borrowed() {
+      const std::lock_guard lock(from_.mutex_);
+      from_.works_.push_back(std::move(work_));
+    }
+    Borrowed(const Borrowed&) = delete;
+    Borrowed& operator=(const Borrowed&) = delete;
+    Work& operator*() const { return *work_; }
+
+   private:
+    Execution& from_;
+    std::unique_ptr<Work> work_;
+  };
+
   const Programs& programs_;
   const Host& host_;
   const Options& antialias_;
@@ -207,7 +235,8 @@ class Execution {
   std::once_flag once_;
   std::optional<Placed> edge_program_;
   std::optional<Refiner> refiner_;
-  std::mutex mutex_;  // of counts_
+  std::vector<std::unique_ptr<Work>> works_;  // those that are not in use
+  std::mutex mutex_;                          // of counts_ and works_
 };
 
 }  // namespace

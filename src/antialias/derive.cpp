@@ -2,6 +2,7 @@
 // slopes. Functions are derived once for each set of arguments that have slopes.
 #include "antialias/derive.h"
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
@@ -25,38 +26,45 @@ using ir::Value;
 constexpr std::size_t directions = 2;
 using Slopes = std::array<Value, directions>;
 constexpr Slopes none = {no_value, no_value};
-
+using Directions = std::array<bool, directions>;  // in which a value changes
 
 class ModuleDeriver {
  public:
-  explicit ModuleDeriver(ir::Module& m) : module(m), activity_(m), inputs_(m.inputs.size()) {
-    for (std::size_t k = 0; k < inputs_; ++k) {
-      slope_input_.push_back(static_cast<std::int32_t>(module.inputs.size()));
+  ModuleDeriver(ir::Module& m, const InputChanges& changes) : module(m), activity_(m) {
+    const std::size_t inputs = m.inputs.size();
+    for (std::size_t k = 0; k < inputs; ++k) {
+      slope_inputs_.push_back({no_input, no_input});
       if (module.inputs[k].rate != ir::Rate::sample) continue;
       const std::string name = module.inputs[k].name;
-      module.inputs.push_back({name + "$x", ir::Rate::sample});
-      module.inputs.push_back({name + "$y", ir::Rate::sample});
+      const auto [along_x, along_y] = changes(name);
+      for (const bool is_x : {true, false}) {
+        const Change change = is_x ? along_x : along_y;
+        if (change == Change::none) continue;
+        slope_inputs_.back()[is_x ? 0 : 1] = static_cast<std::int32_t>(module.inputs.size());
+        module.inputs.push_back({name + (is_x ? "$x" : "$y"),
+                                 change == Change::even ? ir::Rate::frame : ir::Rate::sample});
+      }
     }
   }
 
   const Active& active(std::uint32_t function, const std::vector<bool>& parameters) {
     return activity_.of(function, parameters);
   }
-  // Where the slopes of an input begin.
-  std::int32_t slope_input(std::int32_t input) const {
-    return slope_input_[static_cast<std::size_t>(input)];
+  // The inputs that are the slopes of an input; no_input where it does not change.
+  const std::array<std::int32_t, directions>& slope_inputs(std::int32_t input) const {
+    return slope_inputs_[static_cast<std::size_t>(input)];
   }
-  // The function that gives the results and their slopes: parameters, then two slopes for each
-  // that has them; results likewise.
-  std::uint32_t derived(std::uint32_t function, const std::vector<bool>& parameters);
+  static constexpr std::int32_t no_input = -1;
+  // The function that gives the results and their slopes: parameters, then those slopes of each
+  // that are not 0; results, then two slopes for each that has any.
+  std::uint32_t derived(std::uint32_t function, const std::vector<Directions>& parameters);
 
   ir::Module& module;
 
  private:
   Activity activity_;
-  std::size_t inputs_;
-  std::vector<std::int32_t> slope_input_;
-  std::map<std::pair<std::uint32_t, std::vector<bool>>, std::uint32_t> derived_;
+  std::vector<std::array<std::int32_t, directions>> slope_inputs_;
+  std::map<std::pair<std::uint32_t, std::vector<Directions>>, std::uint32_t> derived_;
 };
 
 class FunctionDeriver {
@@ -70,9 +78,9 @@ class FunctionDeriver {
         slopes_(function.values.size(), none),
         shadow_(function.arrays.size(), -1) {}
 
-  void run(const std::vector<bool>& parameters) {
+  void run(const std::vector<Directions>& parameters) {
     for (std::size_t i = 0; i < parameters.size(); ++i)
-      if (parameters[i]) add_slope_params(function_.body, function_.body.params[i]);
+      add_slope_params(function_.body, function_.body.params[i], parameters[i]);
     for (std::size_t a = 0; a < shadow_.size(); ++a) {
       if (!active_.arrays[a]) continue;
       shadow_[a] = static_cast<std::int32_t>(function_.arrays.size());
@@ -116,23 +124,19 @@ class FunctionDeriver {
       if (slope == no_value) slope = emit.number(0);
     return found;
   }
-  Slopes add_slope_params(Region& region, Value param) {
-    Slopes made;
-    for (Value& slope : made) {
-      slope = function_.add_value(ir::Type::f32);
-      region.params.push_back(slope);
-    }
+  void add_slope_params(Region& region, Value param, const Directions& wanted = {true, true}) {
+    Slopes made = none;
+    for (std::size_t k = 0; k < directions; ++k)
+      if (wanted[k]) region.params.push_back(made[k] = function_.add_value(ir::Type::f32));
     set(param, made);
-    return made;
   }
-  Slopes add_slope_results(Instruction& in, Value result) {
+  void add_slope_results(Instruction& in, Value result) {
     Slopes made;
     for (Value& slope : made) {
       slope = function_.add_value(ir::Type::f32);
       in.results.push_back(slope);
     }
     set(result, made);
-    return made;
   }
 
   void walk(Region& region) {
@@ -164,15 +168,19 @@ class FunctionDeriver {
     if (in.results.size() != 1) return;
     if (in.op == Op::input) {
       if (!is_active(in.result())) return;
-      const std::int32_t first = all_.slope_input(in.imm);
-      return set(in.result(), {emit(Op::input, {}, first), emit(Op::input, {}, first + 1)});
+      Slopes made = none;
+      for (std::size_t k = 0; k < directions; ++k)
+        if (const std::int32_t slope = all_.slope_inputs(in.imm)[k]; slope != all_.no_input)
+          made[k] = emit(Op::input, {}, slope);
+      return set(in.result(), made);
     }
     if (is_active(in.result())) {
-      Slopes made;
+      Slopes made = none;
       for (std::size_t k = 0; k < directions; ++k) {
         std::vector<Value> operands;
         for (const Value operand : in.operands) operands.push_back(slopes(operand)[k]);
-        made[k] = slope_of(emit, in, operands);
+        if (std::ranges::any_of(operands, [](Value slope) { return slope != no_value; }))
+          made[k] = slope_of(emit, in, operands);
       }
       set(in.result(), made);
     }
@@ -191,8 +199,9 @@ class FunctionDeriver {
     if (!is_active(a) && !(between && is_active(in.operands[1]))) return;
     Slopes slope = present(emit, a);
     if (cut == Cut::compare || (cut == Cut::kink && between)) {
-      const Slopes other = present(emit, in.operands[1]);
-      for (std::size_t k = 0; k < directions; ++k) slope[k] = emit.sub(slope[k], other[k]);
+      const Slopes other = slopes(in.operands[1]);
+      for (std::size_t k = 0; k < directions; ++k)
+        if (other[k] != no_value) slope[k] = emit.sub(slope[k], other[k]);
       edges_ = see_edge(emit, *edges_, emit.sub(a, in.operands[1]), slope[0], slope[1]);
     } else if (cut == Cut::kink) {
       edges_ = see_edge(emit, *edges_, a, slope[0], slope[1]);
@@ -270,11 +279,9 @@ class FunctionDeriver {
   }
 
   void call(Instruction& in, std::vector<Instruction>& out) {
-    std::vector<bool> with(in.operands.size());
-    bool any = false;
-    for (std::size_t i = 0; i < with.size(); ++i)
-      any = (with[i] = is_active(in.operands[i])) || any;
-    if (!any) return out.push_back(std::move(in));
+    std::vector<bool> with;
+    for (const Value operand : in.operands) with.push_back(slopes(operand) != none);
+    if (std::ranges::find(with, true) == with.end()) return out.push_back(std::move(in));
     const Emit emit(function_, out);
     const auto callee = static_cast<std::uint32_t>(in.imm);
     const std::string& name = all_.module.functions[callee].name;
@@ -284,18 +291,23 @@ class FunctionDeriver {
       Slopes made = none;
       for (std::size_t k = 0; k < directions; ++k)
         for (std::size_t i = 0; i < with.size(); ++i) {
-          if (!with[i]) continue;
-          const Value part = emit.mul(partials[i], slopes(in.operands[i])[k]);
+          const Value slope = slopes(in.operands[i])[k];
+          if (!with[i] || slope == no_value) continue;
+          const Value part = emit.mul(partials[i], slope);
           made[k] = made[k] == no_value ? part : emit.add(made[k], part);
         }
       return set(in.result(), made);
     }
     const Active& active = all_.active(callee, with);
-    in.imm = static_cast<std::int32_t>(all_.derived(callee, with));
     const std::vector<Value> operands = in.operands, results = in.results;
+    std::vector<Directions> changing(operands.size());
     for (std::size_t i = 0; i < operands.size(); ++i)
-      if (with[i])
-        for (const Value slope : slopes(operands[i])) in.operands.push_back(slope);
+      for (std::size_t k = 0; k < directions; ++k)
+        if (const Value slope = slopes(operands[i])[k]; slope != no_value) {
+          changing[i][k] = true;
+          in.operands.push_back(slope);
+        }
+    in.imm = static_cast<std::int32_t>(all_.derived(callee, changing));
     for (std::size_t i = 0; i < results.size(); ++i)
       if (active.results[i]) add_slope_results(in, results[i]);
     out.push_back(std::move(in));
@@ -313,7 +325,7 @@ class FunctionDeriver {
       Instruction moved{.op = Op::external, .imm = in.imm, .span = in.span};
       for (const Value operand : in.operands)
         moved.operands.push_back(
-            is_active(operand) ? emit.add(operand, slopes(operand)[k]) : operand);
+            slopes(operand)[k] != no_value ? emit.add(operand, slopes(operand)[k]) : operand);
       for (std::size_t i = 0; i < in.results.size(); ++i)
         moved.results.push_back(function_.add_value(ir::Type::f32));
       const std::vector<Value> there = moved.results;
@@ -350,12 +362,15 @@ class FunctionDeriver {
   std::optional<EdgeState> edges_;
 };
 
-std::uint32_t ModuleDeriver::derived(std::uint32_t function, const std::vector<bool>& parameters) {
+std::uint32_t ModuleDeriver::derived(std::uint32_t function,
+                                     const std::vector<Directions>& parameters) {
   const auto key = std::pair(function, parameters);
   if (const auto found = derived_.find(key); found != derived_.end()) return found->second;
   Function copy = module.functions[function];
   copy.name += "'";
-  FunctionDeriver deriver(*this, copy, active(function, parameters), nullptr);
+  std::vector<bool> any;
+  for (const Directions& changing : parameters) any.push_back(changing[0] || changing[1]);
+  FunctionDeriver deriver(*this, copy, active(function, any), nullptr);
   deriver.run(parameters);
   deriver.yield_slopes(false);
   module.functions.push_back(std::move(copy));
@@ -364,10 +379,10 @@ std::uint32_t ModuleDeriver::derived(std::uint32_t function, const std::vector<b
 
 }  // namespace
 
-void derive_edges(ir::Module& module, const Decisions& found) {
+void derive_edges(ir::Module& module, const Decisions& found, const InputChanges& changes) {
   Decisions decisions = found;
   rotate_loops(module.main(), decisions);
-  ModuleDeriver all(module);
+  ModuleDeriver all(module, changes);
   Function main = module.main();
   FunctionDeriver deriver(all, main, all.active(module.entry, {}), &decisions);
   deriver.run({});
@@ -379,8 +394,8 @@ void derive_edges(ir::Module& module, const Decisions& found) {
   module.main() = std::move(main);
 }
 
-void derive_outputs(ir::Module& module) {
-  ModuleDeriver all(module);
+void derive_outputs(ir::Module& module, const InputChanges& changes) {
+  ModuleDeriver all(module, changes);
   Function main = module.main();
   FunctionDeriver deriver(all, main, all.active(module.entry, {}), nullptr);
   deriver.run({});

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "antialias/decisions.h"
+#include "stream/sample_source.h"
 
 namespace pse::antialias {
 
@@ -24,10 +25,12 @@ inline constexpr float no_edge = 1e30f;  // as distance: none
 
 // A module fresh from the lowering becomes one that gives the edges around a sample, as the program
 // sees them on its way through its conditionals. Its inputs are the old ones, then "NAME$x" and
-// "NAME$y" for each of sample rate: that input's slopes, per pixel.
-void derive_edges(ir::Module& module, const Decisions& decisions);
+// "NAME$y" for those of sample rate that change that way: that input's slopes, per pixel; of frame
+// rate where they are even.
+void derive_edges(ir::Module& module, const Decisions& decisions,
+                  const InputChanges& changes = unknown_changes);
 
 // Likewise, but gives the outputs, then "NAME$x" and "NAME$y" for each. For tests and tools.
-void derive_outputs(ir::Module& module);
+void derive_outputs(ir::Module& module, const InputChanges& changes = unknown_changes);
 
 }  // namespace pse::antialias

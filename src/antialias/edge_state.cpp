@@ -25,7 +25,8 @@ EdgeState see_edge(const Emit& e, const EdgeState& before, Value f, Value gx, Va
   const auto& [distance, nx, ny, second, second_x, second_y] = before;
   const auto size = [&](Value v) { return e(Op::fabs, {v}); };
   const Value slope = e(Op::fsqrt, {e(Op::fma, {gx, gx, e.mul(gy, gy)})});
-  const Value d = e.div(f, slope), x = e.div(gx, slope), y = e.div(gy, slope);
+  const Value per_slope = e.div(e.number(1), slope);
+  const Value d = e.mul(f, per_slope), x = e.mul(gx, per_slope), y = e.mul(gy, per_slope);
 
   const Value sine = size(e.sub(e.mul(x, ny), e.mul(y, nx)));
   const Value cosine = e(Op::fma, {x, nx, e.mul(y, ny)});

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <mutex>
 #include <utility>
 
 #include "noise/math.h"
@@ -53,8 +51,7 @@ float box_moment(float d, float nx, float ny) {
   const auto [a, b] = sides(nx, ny);
   const float h = (a + b) / 2, k = (a - b) / 2;
   const auto slope = [&, a = a, b = b](float from) {
-    return b < 1e-6f ? 0
-                     : (h * h * h / 6 - h * from * from / 2 + from * from * from / 3) / (a * b);
+    return b < 1e-6f ? 0 : (h * h * h / 6 - h * from * from / 2 + from * from * from / 3) / (a * b);
   };
   return d < k ? (k * k - d * d) / (2 * a) + slope(k) : slope(d);
 }
@@ -148,20 +145,6 @@ float Filter::moment(float distance, float nx, float ny) const {
     }
   };
   return of_unit() * scale_;
-}
-
-const std::vector<std::array<float, 2>>& Filter::places() const {
-  static std::mutex mutex;
-  static std::map<std::pair<FilterKind, float>, std::vector<std::array<float, 2>>> made;
-  const std::lock_guard lock(mutex);
-  auto& found = made[{kind_, scale_}];
-  if (!found.empty()) return found;
-  found.reserve(1 << 16);
-  for (int v = 0; v < 256; ++v)
-    for (int u = 0; u < 256; ++u)
-      found.push_back(
-          place((static_cast<float>(u) + 0.5f) / 256, (static_cast<float>(v) + 0.5f) / 256));
-  return found;
 }
 
 std::array<float, 2> Filter::place(float u, float v) const {

@@ -7,7 +7,6 @@
 #include <array>
 #include <optional>
 #include <string_view>
-#include <vector>
 
 namespace pse::antialias {
 
@@ -43,9 +42,6 @@ class Filter {
 
   // An offset from the centre for a point of the unit square, such that all have equal weight.
   std::array<float, 2> place(float u, float v) const;
-  // The same for the middles of a grid of 256 by 256 boxes of the square, row by row. Made once for
-  // each kernel, and kept.
-  const std::vector<std::array<float, 2>>& places() const;
 
  private:
   FilterKind kind_;

@@ -4,14 +4,48 @@
 #include <algorithm>
 #include <limits>
 
-#include "stream/planes.h"
-
 namespace pse::antialias {
 namespace {
 
 constexpr std::size_t batch = 1024;
 
 }  // namespace
+
+void Results::resize(std::size_t outputs, std::size_t places) {
+  if (outputs <= planes_.pointers().size() && places <= capacity_) return;
+  capacity_ = std::max(places, 2 * capacity_);
+  planes_ = Planes(std::vector<bool>(std::max(outputs, planes_.pointers().size()), true),
+                   static_cast<std::int64_t>(capacity_));
+}
+
+std::vector<InputSlope> input_slopes(const ir::Module& module) {
+  const std::vector<ir::Input>& inputs = module.inputs;
+  std::vector<InputSlope> found;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const std::string& name = inputs[i].name;
+    if (name.size() < 3 || name[name.size() - 2] != '$') continue;
+    const auto of = std::ranges::find(inputs, name.substr(0, name.size() - 2), &ir::Input::name);
+    if (of == inputs.end()) continue;
+    found.push_back({i, static_cast<std::size_t>(of - inputs.begin()), name.back() == 'x',
+                     inputs[i].rate != ir::Rate::sample});
+  }
+  return found;
+}
+
+void set_even_slopes(const ir::Module& module, const SampleSource& source, FrameState& state) {
+  std::vector<bool> wanted(module.inputs.size());
+  const std::vector<InputSlope> slopes = input_slopes(module);
+  for (const InputSlope& slope : slopes)
+    if (slope.is_even) wanted[slope.of] = true;
+  const Planes low(wanted, 1), high(wanted, 1);
+  for (const InputSlope& slope : slopes) {
+    if (!slope.is_even) continue;
+    const double zero[] = {0}, one[] = {1};
+    source.fill(zero, zero, low.pointers());
+    source.fill(slope.along_x ? one : zero, slope.along_x ? zero : one, high.pointers());
+    state.uniforms[slope.input] = high.pointers()[slope.of][0] - low.pointers()[slope.of][0];
+  }
+}
 
 PlaceRunner::PlaceRunner(const Program& program, const FrameState& state,
                          const SampleSource& source)
@@ -20,35 +54,19 @@ PlaceRunner::PlaceRunner(const Program& program, const FrameState& state,
   used_.resize(inputs.size());
   sloping_.resize(inputs.size());
   for (std::size_t i = 0; i < inputs.size(); ++i) used_[i] = inputs[i].rate == ir::Rate::sample;
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const std::string& name = inputs[i].name;
-    if (!used_[i] || name.size() < 3 || name[name.size() - 2] != '$') continue;
-    const auto of = std::ranges::find(inputs, name.substr(0, name.size() - 2), &ir::Input::name);
-    if (of == inputs.end()) continue;
-    const auto index = static_cast<std::size_t>(of - inputs.begin());
-    slopes_.push_back({i, index, name.back() == 'x'});
-    sloping_[index] = true;
+  for (const InputSlope& slope : input_slopes(program.module())) {
+    if (slope.is_even) continue;
+    slopes_.push_back(slope);
+    sloping_[slope.of] = true;
   }
   for (std::size_t i = 0; i < inputs.size() && !slopes_.empty(); ++i)
     if (used_[i] && inputs[i].name == "id") id_ = i, sloping_[i] = true;
-  if (!source.is_even()) return;
-  const Planes low(sloping_, 1), high(sloping_, 1);
-  for (Slope& slope : slopes_) {
-    const double zero[] = {0}, one[] = {1};
-    source.fill(zero, zero, low.pointers());
-    source.fill(slope.along_x ? one : zero, slope.along_x ? zero : one, high.pointers());
-    slope.even = high.pointers()[slope.of][0] - low.pointers()[slope.of][0];
-  }
 }
 
 void PlaceRunner::fill(std::span<const double> x, std::span<const double> y,
                        std::span<float* const> planes) const {
   source_.fill(x, y, planes);
   if (slopes_.empty()) return;
-  if (source_.is_even()) {
-    for (const Slope& slope : slopes_) std::fill_n(planes[slope.input], x.size(), slope.even);
-    return;
-  }
   // Between the pixel's sides where the source can be asked there, else between its neighbours.
   const double step = source_.anywhere() ? 0.5 : 1;
   const auto scale = static_cast<float>(0.5 / step);
@@ -65,7 +83,7 @@ void PlaceRunner::fill(std::span<const double> x, std::span<const double> y,
     };
     fill_moved(-step, low);
     fill_moved(2 * step, high);
-    for (const Slope& slope : slopes_) {
+    for (const InputSlope& slope : slopes_) {
       if (slope.along_x != along_x) continue;
       const float *from = low.pointers()[slope.of], *to = high.pointers()[slope.of];
       float* out = planes[slope.input];
@@ -85,22 +103,26 @@ void PlaceRunner::fill(std::span<const double> x, std::span<const double> y,
   }
 }
 
-Results PlaceRunner::run(const Places& places, RunStatus& status) const {
-  const std::size_t count = places.size(), outputs = program_.module().outputs.size();
-  Results results(outputs, std::vector<float>(count));
-  const auto capacity = static_cast<std::int64_t>(std::min(count, batch));
-  const Planes in(used_, capacity), out(std::vector<bool>(outputs, true), capacity);
-  Scratch scratch;
+const Planes& PlaceRunner::inputs(Work& work) const {
+  for (const auto& [runner, planes] : work.inputs)
+    if (runner == this) return planes;
+  return work.inputs.emplace_back(this, Planes(used_, batch)).second;
+}
+
+const Results& PlaceRunner::run(Work& work, RunStatus& status) const {
+  const std::size_t count = work.places.size(), outputs = program_.module().outputs.size();
+  const std::span<const double> x = work.places.x, y = work.places.y;
+  work.results.resize(outputs, count);
+  const std::span<float* const> in = inputs(work).pointers();
+  std::vector<float*> out(outputs);
   for (std::size_t first = 0; first < count && !status.cancel; first += batch) {
     const std::size_t size = std::min(batch, count - first);
-    fill(std::span(places.x).subspan(first, size), std::span(places.y).subspan(first, size),
-         in.pointers());
-    program_.kernel->run_samples(state_, status, scratch, in.pointers().data(),
-                                 out.pointers().data(), static_cast<std::int64_t>(size));
-    for (std::size_t o = 0; o < outputs; ++o)
-      std::copy_n(out.pointers()[o], size, results[o].begin() + static_cast<std::ptrdiff_t>(first));
+    fill(x.subspan(first, size), y.subspan(first, size), in);
+    for (std::size_t o = 0; o < outputs; ++o) out[o] = work.results[o] + first;
+    program_.kernel->run_samples(state_, status, work.scratch, in.data(), out.data(),
+                                 static_cast<std::int64_t>(size));
   }
-  return results;
+  return work.results;
 }
 
 }  // namespace pse::antialias

@@ -1,8 +1,10 @@
 // A program run at any places of the picture.
 #pragma once
 
+#include <utility>
 #include <vector>
 
+#include "stream/planes.h"
 #include "stream/program.h"
 #include "stream/sample_source.h"
 
@@ -12,38 +14,66 @@ namespace pse::antialias {
 struct Places {
   std::vector<double> x, y;
   std::size_t size() const { return x.size(); }
+  void clear() { x.clear(), y.clear(); }
   void add(double px, double py) { x.push_back(px), y.push_back(py); }
 };
 
-// outputs[o][i]: output o of the program at place i.
-using Results = std::vector<std::vector<float>>;
+// results[o][i]: output o of the program at place i.
+class Results {
+ public:
+  // Makes room; what was there is lost.
+  void resize(std::size_t outputs, std::size_t places);
+  float* operator[](std::size_t output) const { return planes_.pointers()[output]; }
+
+ private:
+  Planes planes_;
+  std::size_t capacity_ = 0;
+};
+
+class PlaceRunner;
+
+// One thread's memory, used again from run to run.
+struct Work {
+  Places places;    // where the next run is to be
+  Results results;  // of the last run
+  Scratch scratch;
+  std::vector<std::pair<const PlaceRunner*, Planes>> inputs;
+};
+
+// An input "NAME$x" or "NAME$y" that is the slope of the input NAME per pixel; both are indices of
+// Module::inputs.
+struct InputSlope {
+  std::size_t input, of;
+  bool along_x;
+  bool is_even;  // the same everywhere, and a uniform
+};
+std::vector<InputSlope> input_slopes(const ir::Module& module);
+
+// Sets the uniforms of even slopes; to be done before the frame is computed.
+void set_even_slopes(const ir::Module& module, const SampleSource& source, FrameState& state);
 
 class PlaceRunner {
  public:
-  // `source` is made for the program's module. Inputs named "NAME$x" and "NAME$y" get the slopes of
-  // NAME per pixel. All must outlive this; `state` has its frame computed.
+  // `source` is made for the program's module. Inputs that are slopes get their values. All must
+  // outlive this; `state` has its frame computed.
   PlaceRunner(const Program& program, const FrameState& state, const SampleSource& source);
 
-  // `status` may be cancelled; the results are then meaningless. May be called from several
-  // threads at once.
-  Results run(const Places& places, RunStatus& status) const;
+  // Runs the program at work.places. `status` may be cancelled; the results are then meaningless.
+  // May be called from several threads at once, each with its own memory.
+  const Results& run(Work& work, RunStatus& status) const;
 
  private:
-  struct Slope {
-    std::size_t input, of;  // indices of Module::inputs
-    bool along_x;
-    float even = 0;  // the slope, where it is the same everywhere
-  };
   void fill(std::span<const double> x, std::span<const double> y,
             std::span<float* const> planes) const;
+  const Planes& inputs(Work& work) const;
 
   const Program& program_;
   const FrameState& state_;
   const SampleSource& source_;
-  std::vector<bool> used_;      // inputs that the source fills, and slopes
-  std::vector<bool> sloping_;   // inputs whose slopes are wanted
-  std::vector<Slope> slopes_;
-  std::size_t id_ = no_id;  // the input that tells objects apart
+  std::vector<bool> used_;          // inputs that the source fills, and slopes
+  std::vector<bool> sloping_;       // inputs whose slopes are wanted
+  std::vector<InputSlope> slopes_;  // those that are not even
+  std::size_t id_ = no_id;          // the input that tells objects apart
   static constexpr auto no_id = static_cast<std::size_t>(-1);
 };
 

@@ -1,14 +1,14 @@
 // Compiling them from one lowered module.
 #include "antialias/programs.h"
 
-#include "antialias/derive.h"
 #include "antialias/path.h"
 #include "passes/passes.h"
 
 namespace pse::antialias {
 
 std::expected<Programs, std::string> compile_programs(CompiledFront front,
-                                                      const CompileOptions& options, Mode mode) {
+                                                      const CompileOptions& options, Mode mode,
+                                                      const InputChanges& changes) {
   Programs programs;
   programs.outputs = front.module.outputs.size();
   const auto finish = [&](CompiledFront&& with_checks) -> std::expected<Programs, std::string> {
@@ -22,9 +22,9 @@ std::expected<Programs, std::string> compile_programs(CompiledFront front,
     programs.shown = programs.quiet = *shown;
     // Checks that cannot fail are gone by now.
     if (mode == Mode::none || !has_checks((*shown)->module())) return std::move(programs);
-    auto quiet = compile_back(std::move(*without), {.codegen = options.codegen,
-                                                    .interpret = options.interpret,
-                                                    .optimize = options.optimize});
+    auto quiet = compile_back(
+        std::move(*without),
+        {.codegen = options.codegen, .interpret = options.interpret, .optimize = options.optimize});
     if (!quiet) return std::unexpected(quiet.error());
     programs.quiet = *quiet;
     return std::move(programs);
@@ -40,17 +40,18 @@ std::expected<Programs, std::string> compile_programs(CompiledFront front,
   programs.has_paths = true;
   CompiledFront edges = copy;
   // Where nothing jumps there is seldom a visible edge, and it may never be asked for.
-  programs.edges = std::async(decisions.any_jump ? std::launch::async : std::launch::deferred, [edges = std::move(edges), decisions,
-                                                   options]() mutable {
-                     remove_checks(edges.module);
-                     derive_edges(edges.module, decisions);
-                     edges.program.outputs.clear();
-                     for (const ir::Output& output : edges.module.outputs)
-                       edges.program.outputs.push_back({output.name, 1, {}});
-                     return compile_back(std::move(edges), {.codegen = options.codegen,
-                                                            .interpret = options.interpret,
-                                                            .optimize = options.optimize});
-                   }).share();
+  const auto when = decisions.any_jump ? std::launch::async : std::launch::deferred;
+  const auto derive = [edges = std::move(edges), decisions, options, changes]() mutable {
+    remove_checks(edges.module);
+    derive_edges(edges.module, decisions, changes);
+    edges.program.outputs.clear();
+    for (const ir::Output& output : edges.module.outputs)
+      edges.program.outputs.push_back({output.name, 1, {}});
+    return compile_back(
+        std::move(edges),
+        {.codegen = options.codegen, .interpret = options.interpret, .optimize = options.optimize});
+  };
+  programs.edges = std::async(when, derive).share();
   add_path(copy.module, decisions);
   return finish(std::move(copy));
 }

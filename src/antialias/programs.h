@@ -3,6 +3,7 @@
 
 #include <future>
 
+#include "antialias/derive.h"
 #include "antialias/filter.h"
 #include "stream/program.h"
 
@@ -33,8 +34,10 @@ struct Programs {
   bool has_paths = false;
 };
 
-// The error is a sentence for the user.
-std::expected<Programs, std::string> compile_programs(CompiledFront front,
-                                                      const CompileOptions& options, Mode mode);
+// `changes`: what is known of the samples that the programs will run on. The error is a sentence
+// for the user.
+std::expected<Programs, std::string> compile_programs(
+    CompiledFront front, const CompileOptions& options, Mode mode,
+    const InputChanges& changes = unknown_changes);
 
 }  // namespace pse::antialias

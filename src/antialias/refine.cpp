@@ -12,10 +12,10 @@ namespace pse::antialias {
 // A pixel with one edge under its kernel.
 struct Refiner::Crossing {
   Pixel pixel;
-  float distance;     // of the centre from the edge, positive on the side the normal points to
+  float distance;  // of the centre from the edge, positive on the side the normal points to
   float nx, ny;
-  float bend = 0;     // how much the normal turns towards the tangent (-ny, nx) per pixel along it
-  float share = 0;    // of the kernel on the normal's side
+  float bend = 0;   // how much the normal turns towards the tangent (-ny, nx) per pixel along it
+  float share = 0;  // of the kernel on the normal's side
   float towards = 0, away = 0;  // to the middles of the sides, along the normal
 };
 
@@ -38,8 +38,8 @@ constexpr float most_turn = 0.5f;
 // A share so near to 0 or 1 leaves the pixel as it is.
 constexpr float least_share = 0.001f;
 
-// The distance x of a pixel from an edge, from what two places said of it: f / |f'| is `first` at the
-// pixel, and `second` at `out` along the normal and s along the edge, which bends away by a
+// The distance x of a pixel from an edge, from what two places said of it: f / |f'| is `first` at
+// the pixel, and `second` at `out` along the normal and s along the edge, which bends away by a
 // parabola. Along the normal f is x + b x^2, so f / |f'| is x - b x^2; a bend measured off the edge
 // is made that of the edge.
 float true_distance(float first, float second, float out, float& bend, float s) {
@@ -49,8 +49,7 @@ float true_distance(float first, float second, float out, float& bend, float s) 
   for (int round = 0; round < 3; ++round) {
     bend = measured / std::max(1 - measured * beside, 0.5f);
     x = beside - out - bend * s * s / 2;
-    const float b =
-        std::abs(x) < least ? 0 : std::clamp((x - first) / (x * x), -most_b, most_b);
+    const float b = std::abs(x) < least ? 0 : std::clamp((x - first) / (x * x), -most_b, most_b);
     beside = second + b * beside * beside;
   }
   return x;
@@ -59,11 +58,12 @@ float true_distance(float first, float second, float out, float& bend, float s) 
 }  // namespace
 
 std::vector<Refiner::Crossing> Refiner::find_crossings(const std::vector<Pixel>& pixels,
-                                                       std::vector<Pixel>& unclear,
+                                                       std::vector<Pixel>& unclear, Work& work,
                                                        RunStatus& status) const {
-  Places places;
+  Places& places = work.places;
+  places.clear();
   for (const Pixel& pixel : pixels) places.add(centre(pixel.x), centre(pixel.y));
-  const Results edges = edges_->run(places, status);
+  const Results& edges = edges_->run(work, status);
   const float reach = options_.filter.reach();
   std::vector<Crossing> crossings;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -79,10 +79,11 @@ std::vector<Refiner::Crossing> Refiner::find_crossings(const std::vector<Pixel>&
 
 // Looks at each edge again, a little along it and on its far side: how it bends, and whether there
 // is another edge.
-void Refiner::follow(std::vector<Crossing>& crossings, std::vector<Pixel>& unclear,
+void Refiner::follow(std::vector<Crossing>& crossings, std::vector<Pixel>& unclear, Work& work,
                      RunStatus& status) const {
   const float reach = options_.filter.reach(), s = along * reach;
-  Places places;
+  Places& places = work.places;
+  places.clear();
   std::vector<float> offsets;  // from the first guess of the edge along the normal
   for (const Crossing& c : crossings) {
     offsets.push_back(c.distance < 0 ? beyond * reach : -beyond * reach);
@@ -90,7 +91,7 @@ void Refiner::follow(std::vector<Crossing>& crossings, std::vector<Pixel>& uncle
     places.add(centre(c.pixel.x) + double(out * c.nx - s * c.ny),
                centre(c.pixel.y) + double(out * c.ny + s * c.nx));
   }
-  const Results edges = edges_->run(places, status);
+  const Results& edges = edges_->run(work, status);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < crossings.size(); ++i) {
     Crossing c = crossings[i];
@@ -111,8 +112,8 @@ void Refiner::follow(std::vector<Crossing>& crossings, std::vector<Pixel>& uncle
       continue;
     }
     c.bend = turn / s;
-    c.distance = true_distance(c.distance, line.distance / cosine, offsets[i] - c.distance,
-                               c.bend, s);
+    c.distance =
+        true_distance(c.distance, line.distance / cosine, offsets[i] - c.distance, c.bend, s);
     if (std::abs(c.distance) >= options_.filter.reach(c.nx, c.ny)) continue;
     const float moment = options_.filter.moment(c.distance, c.nx, c.ny);
     const float straight = options_.filter.share(c.distance, c.nx, c.ny);
@@ -128,19 +129,20 @@ void Refiner::follow(std::vector<Crossing>& crossings, std::vector<Pixel>& uncle
 // LERP(share, one side, other side), each side where the kernel's weight on it has its middle: what
 // changes evenly on a side then has exactly its mean.
 void Refiner::blend(const Tile& tile, const std::vector<Crossing>& crossings, Refined& result,
-                    std::vector<Pixel>& unclear, RunStatus& status) const {
-  Places places;
+                    std::vector<Pixel>& unclear, Work& work, RunStatus& status) const {
+  Places& places = work.places;
+  places.clear();
   for (const Crossing& c : crossings) {
     for (const float by : {c.towards, c.away})
       places.add(centre(c.pixel.x) + double(by * c.nx), centre(c.pixel.y) + double(by * c.ny));
   }
-  const Results sides = program_.run(places, status);
+  const Results& sides = program_.run(work, status);
   for (std::size_t i = 0; i < crossings.size(); ++i) {
     const Crossing& c = crossings[i];
     const std::size_t here = tile.at(c.pixel.x, c.pixel.y), a = 2 * i, b = a + 1;
     const std::size_t own = c.distance < 0 ? b : a;
     // The sides must be two ways through the program, the pixel's own one of them.
-    const std::vector<float>& path = sides[outputs_];
+    const float* path = sides[outputs_];
     const bool one_way = path[a] == path[b], strange = path[own] != tile.path()[here];
     bool doubt = false;
     for (std::size_t o = 0; o < outputs_ && !doubt; ++o)
@@ -156,10 +158,10 @@ void Refiner::blend(const Tile& tile, const std::vector<Crossing>& crossings, Re
   }
 }
 
-Refined Refiner::refine(const Tile& tile, RunStatus& status, Counts& counts) const {
+Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts& counts) const {
   const int around = options_.filter.reach() > 1.01f ? 2 : 1;
   std::vector<Pixel> pixels = find_edge_pixels(tile, around);
-  Refined result{{}, Results(outputs_)};
+  Refined result({}, outputs_);
   if (pixels.empty()) return result;
   counts.filtered += static_cast<std::int64_t>(pixels.size());
   // The program knows the edges within objects, not those of the objects.
@@ -168,13 +170,13 @@ Refined Refiner::refine(const Tile& tile, RunStatus& status, Counts& counts) con
   std::vector<Pixel> unclear(pixels.begin(), inner.begin());
   pixels.erase(pixels.begin(), inner.begin());
   if (!pixels.empty()) {
-    std::vector<Crossing> crossings = find_crossings(pixels, unclear, status);
-    follow(crossings, unclear, status);
-    blend(tile, crossings, result, unclear, status);
+    std::vector<Crossing> crossings = find_crossings(pixels, unclear, work, status);
+    follow(crossings, unclear, work, status);
+    blend(tile, crossings, result, unclear, work, status);
   }
   counts.blended += static_cast<std::int64_t>(result.pixels.size());
   counts.supersampled += static_cast<std::int64_t>(unclear.size());
-  settle(std::move(unclear), result, status);
+  settle(std::move(unclear), result, work, status);
   return result;
 }
 

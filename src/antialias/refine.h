@@ -2,6 +2,7 @@
 // chapter's "More Detailed Description", pixel by pixel.
 #pragma once
 
+#include "antialias/patterns.h"
 #include "antialias/places.h"
 #include "antialias/programs.h"
 #include "antialias/tile.h"
@@ -23,7 +24,10 @@ struct Counts {
 // The picture after antialiasing at some pixels: values[o][i] is output o at pixels[i].
 struct Refined {
   std::vector<Pixel> pixels;
-  Results values;
+  std::vector<std::vector<float>> values;
+  Refined(std::vector<Pixel> list, std::size_t outputs) : pixels(std::move(list)), values(outputs) {
+    for (auto& plane : values) plane.resize(pixels.size());
+  }
 };
 
 class Refiner {
@@ -31,31 +35,37 @@ class Refiner {
   // `edges` may be null: then everything is supersampled.
   Refiner(const PlaceRunner& program, const PlaceRunner* edges, const Options& options,
           std::size_t outputs)
-      : program_(program), edges_(edges), options_(options), outputs_(outputs) {}
+      : program_(program),
+        edges_(edges),
+        options_(options),
+        outputs_(outputs),
+        patterns_(options.filter, static_cast<std::uint32_t>(options.samples)) {}
 
   // The pixels of a tile whose values change, in the procedural mode. Every value depends on the
   // pixel alone.
-  Refined refine(const Tile& tile, RunStatus& status, Counts& counts) const;
+  Refined refine(const Tile& tile, Work& work, RunStatus& status, Counts& counts) const;
 
   // All pixels of a list at options.samples samples each.
-  Refined supersample(std::vector<Pixel> pixels, RunStatus& status) const;
+  Refined supersample(std::vector<Pixel> pixels, Work& work, RunStatus& status) const;
 
  private:
   struct Crossing;
   std::vector<Crossing> find_crossings(const std::vector<Pixel>& pixels,
-                                       std::vector<Pixel>& unclear, RunStatus& status) const;
-  void follow(std::vector<Crossing>& crossings, std::vector<Pixel>& unclear,
+                                       std::vector<Pixel>& unclear, Work& work,
+                                       RunStatus& status) const;
+  void follow(std::vector<Crossing>& crossings, std::vector<Pixel>& unclear, Work& work,
               RunStatus& status) const;
   void blend(const Tile& tile, const std::vector<Crossing>& crossings, Refined& result,
-             std::vector<Pixel>& unclear, RunStatus& status) const;
+             std::vector<Pixel>& unclear, Work& work, RunStatus& status) const;
   Refined sample(std::vector<Pixel> pixels, std::uint32_t first, std::uint32_t last,
-                 std::vector<bool>* uneven, RunStatus& status) const;
-  void settle(std::vector<Pixel> unclear, Refined& result, RunStatus& status) const;
+                 std::vector<bool>* uneven, Work& work, RunStatus& status) const;
+  void settle(std::vector<Pixel> unclear, Refined& result, Work& work, RunStatus& status) const;
 
   const PlaceRunner& program_;
   const PlaceRunner* edges_;
   const Options& options_;
   std::size_t outputs_;
+  Patterns patterns_;
 };
 
 }  // namespace pse::antialias

@@ -14,8 +14,7 @@ using ir::Value;
 
 class Rotation {
  public:
-  Rotation(Function& function, Decisions& decisions)
-      : function_(function), decisions_(decisions) {}
+  Rotation(Function& function, Decisions& decisions) : function_(function), decisions_(decisions) {}
 
   void walk(Region& region) {
     std::vector<Instruction> out;

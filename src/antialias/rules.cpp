@@ -39,9 +39,12 @@ Value slope_of(const Emit& e, const Instruction& in, const std::vector<Value>& s
       return s[0] == no_value ? minus(e, s[1]) : e.sub(s[0], s[1]);
     case Op::fmul:
       return plus(e, times(e, x[1], s[0]), times(e, x[0], s[1]));
-    case Op::fdiv:
-      if (s[1] == no_value) return e.div(s[0], x[1]);
-      return e.div(e.sub(or_zero(e, s[0]), e.mul(in.result(), s[1])), x[1]);
+    case Op::fdiv: {
+      // The same factor along x and y, so computed once.
+      const Value factor = e.div(e.number(1), x[1]);
+      if (s[1] == no_value) return e.mul(s[0], factor);
+      return e.mul(e.sub(or_zero(e, s[0]), e.mul(in.result(), s[1])), factor);
+    }
     case Op::fma:
       return plus(e, plus(e, times(e, x[1], s[0]), times(e, x[0], s[1])), s[2]);
     case Op::fneg:
@@ -49,7 +52,7 @@ Value slope_of(const Emit& e, const Instruction& in, const std::vector<Value>& s
     case Op::fabs:
       return e.choose(e.less(x[0], e.number(0)), minus(e, s[0]), s[0]);
     case Op::fsqrt:
-      return e.div(e.mul(e.number(0.5f), s[0]), in.result());
+      return e.mul(s[0], e.div(e.number(0.5f), in.result()));
     case Op::fmin:
       return e.choose(e.less(x[0], x[1]), or_zero(e, s[0]), or_zero(e, s[1]));
     case Op::fmax:
@@ -120,8 +123,8 @@ std::optional<std::vector<Value>> partials_of(const Emit& e, const std::string& 
     if (wanted[1]) {
       // y log(a), the logarithm by two powers close by.
       const double h = 1.0 / 64;
-      partials[1] = e.mul(e.sub(at({a, e.add(b, number(h))}), at({a, e.sub(b, number(h))})),
-                          number(0.5 / h));
+      partials[1] =
+          e.mul(e.sub(at({a, e.add(b, number(h))}), at({a, e.sub(b, number(h))})), number(0.5 / h));
     }
     return partials;
   }

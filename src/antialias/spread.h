@@ -1,6 +1,6 @@
 // Points that fill the unit square evenly: the first two dimensions of Sobol's sequence, shifted
-// for each pixel by bits of its own. Any 2^k of them from a multiple of 2^k on have one point in
-// each box of the dyadic grids of 2^k boxes.
+// by bits that two numbers give. Any 2^k of them from a multiple of 2^k on have one point in each
+// box of the dyadic grids of 2^k boxes.
 #pragma once
 
 #include <array>
@@ -13,9 +13,8 @@ namespace pse::antialias {
 
 class Spread {
  public:
-  // A pixel of the picture, and which of its spreads.
-  Spread(std::int32_t x, std::int32_t y, std::int32_t which = 0) {
-    const num::Int column = num::scatter<num::Int>(num::Int(x) + num::Int(which));
+  Spread(std::int32_t x, std::int32_t y) {
+    const num::Int column = num::scatter<num::Int>(num::Int(x));
     const num::Int both = num::scatter<num::Int>(column ^ num::Int(y));
     shift_x_ = both.bits();
     shift_y_ = num::scatter<num::Int>(both + num::Int(1)).bits();
@@ -24,10 +23,6 @@ class Spread {
   // Point i, both in [0, 1).
   std::array<float, 2> operator()(std::uint32_t i) const {
     return {unit(reversed(i) ^ shift_x_), unit(sobol(i) ^ shift_y_)};
-  }
-  // The box of a grid of 256 by 256 that it lies in, row by row.
-  std::uint32_t box(std::uint32_t i) const {
-    return ((sobol(i) ^ shift_y_) >> 24) << 8 | (reversed(i) ^ shift_x_) >> 24;
   }
 
  private:

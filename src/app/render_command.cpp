@@ -150,8 +150,9 @@ Exit render_command(Session& session) {
     auto front = compile_front(program.sources, file, host, compile_with, diagnostics);
     report(diagnostics, program.sources, session);
     if (!front) return Exit::program;
-    auto made =
-        antialias::compile_programs(std::move(*front), compile_with, options.antialias.mode);
+    auto made = antialias::compile_programs(
+        std::move(*front), compile_with, options.antialias.mode,
+        surfaces ? unknown_changes : image_plane_changes(options.transform));
     if (!made) throw Failure(Exit::program, made.error());
     count_compiled(*made->shown->split, counts);
     operations.add(counts);

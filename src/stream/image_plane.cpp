@@ -165,7 +165,6 @@ class PlaneSamples : public SampleSource {
     }
   }
   bool anywhere() const override { return true; }
-  bool is_even() const override { return !plane_.transform; }
 
  private:
   const ImagePlane plane_;
@@ -248,6 +247,22 @@ TileSource image_plane_source(const ir::Module& module, const ImagePlane& plane,
 std::unique_ptr<SampleSource> image_plane_samples(const ir::Module& module,
                                                   const ImagePlane& plane) {
   return std::make_unique<PlaneSamples>(module, plane);
+}
+
+InputChanges image_plane_changes(const std::optional<PlaneTransform>& transform) {
+  using enum Change;
+  // Without perspective a transform moves every point by a sum of even amounts.
+  const bool is_flat = !transform || ((*transform)[12] == 0 && (*transform)[13] == 0 &&
+                                      (*transform)[14] == 0);
+  return [is_flat, is_moved = transform.has_value()](std::string_view name) -> Changes {
+    const auto found = std::find(coordinate_names.begin(), coordinate_names.end(), name);
+    if (found == coordinate_names.end()) return {};
+    const auto which = static_cast<Coordinate>(found - coordinate_names.begin());
+    if (which >= Coordinate::span_near) return {none, none};
+    if (is_moved && is_transformed(which)) return is_flat ? Changes{even, even} : Changes{};
+    if (which == Coordinate::point_z) return {none, none};
+    return varies_along_row(which) ? Changes{even, none} : Changes{none, even};
+  };
 }
 
 }  // namespace pse

@@ -51,4 +51,7 @@ TileSource image_plane_source(const ir::Module& module, const ImagePlane& plane,
 std::unique_ptr<SampleSource> image_plane_samples(const ir::Module& module,
                                                   const ImagePlane& plane);
 
+// How they change from pixel to pixel.
+InputChanges image_plane_changes(const std::optional<PlaneTransform>& transform);
+
 }  // namespace pse

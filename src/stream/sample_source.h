@@ -4,7 +4,10 @@
 // textures").
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <span>
+#include <string_view>
 
 namespace pse {
 
@@ -23,9 +26,19 @@ class SampleSource {
   // False for stored pixels (input images, another renderer's buffers): they are known at pixel
   // centres only, and fill() answers with the pixel that the place lies in.
   virtual bool anywhere() const = 0;
-
-  // Whether every input changes by the same amount from pixel to pixel, wherever these are.
-  virtual bool is_even() const { return false; }
 };
+
+// How an input of sample rate changes from pixel to pixel.
+enum class Change : std::uint8_t {
+  none,  // not at all
+  even,  // by the same amount everywhere in the picture
+  any,
+};
+struct Changes {
+  Change along_x = Change::any, along_y = Change::any;
+};
+// What is known of a source before it is made: the changes of an input, by its name.
+using InputChanges = std::function<Changes(std::string_view input)>;
+inline Changes unknown_changes(std::string_view) { return {}; }
 
 }  // namespace pse

@@ -4,10 +4,11 @@
 //
 //   bench_picture [--size N] [--runs N] [--threads N] [--pictures FOLDER] [PROGRAM...]
 //
-// Without programs: those of gallery/2002/antialiasing. Before it reports a time it checks that the
-// procedural picture is the same in tiles of another size. --pictures also writes for each program
-// a row of five enlarged pieces: none, procedural, 16, 256 samples, and eight times the difference
-// of the second from the fourth.
+// --profile N only computes the procedural picture N times, for a profiler. Without programs: those
+// of gallery/2002/antialiasing. Before it reports a time it checks that the procedural picture is
+// the same in tiles of another size. --pictures also writes for each program a row of five enlarged
+// pieces: none, procedural, 16, 256 samples, and eight times the difference of the second from the
+// fourth.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +29,7 @@ using namespace pse;
 namespace fs = std::filesystem;
 
 struct Settings {
-  int size = 512, runs = 5, threads = 1;
+  int size = 512, runs = 5, threads = 1, profile = 0;
   fs::path pictures;
   std::vector<fs::path> programs;
 };
@@ -180,6 +181,8 @@ Settings read(int count, char** words) {
       settings.runs = std::max(1, std::atoi(value().c_str()));
     else if (word == "--threads")
       settings.threads = std::atoi(value().c_str());
+    else if (word == "--profile")
+      settings.profile = std::atoi(value().c_str());
     else if (word == "--pictures")
       settings.pictures = value();
     else
@@ -196,6 +199,8 @@ Settings read(int count, char** words) {
 double measure(const fs::path& file, const Settings& settings) {
   const antialias::Programs plain = compile(file, antialias::Mode::none);
   const antialias::Programs programs = compile(file, antialias::Mode::procedural);
+  for (int run = 0; run < settings.profile; ++run) render(programs, settings, 0);
+  if (settings.profile > 0) return 0;
   std::array<Picture, 4> pictures = {render(plain, settings, 1), render(programs, settings, 0),
                                      render(plain, settings, 16), render(plain, settings, 256)};
   pictures[0] = render(plain, settings, 0);  // no paths: the plain picture

@@ -64,7 +64,7 @@ class Execution {
     const bool anywhere = quiet.samples->anywhere();
     procedural_ = antialias_.mode == Mode::procedural && programs_.has_paths && anywhere;
     supersample_ = antialias_.mode == Mode::supersample;
-    apron_ = !procedural_ ? 0 : antialias_.filter.reach() > 1.01f ? 2 : 1;
+    apron_ = procedural_ ? apron_of(antialias_.filter) : 0;
 
     std::optional<Refiner> all;
     if (supersample_) all.emplace(*quiet.runner, nullptr, antialias_, programs_.outputs);

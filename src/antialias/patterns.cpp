@@ -11,20 +11,20 @@ constexpr std::uint32_t sets = 16;  // a power of 2
 }  // namespace
 
 Patterns::Patterns(const Filter& filter, std::uint32_t samples) : samples_(samples) {
-  offsets_.reserve(std::size_t{sets} * samples);
   for (std::uint32_t set = 0; set < sets; ++set) {
     const Spread spread(static_cast<std::int32_t>(set), 0);
     for (std::uint32_t k = 0; k < samples; ++k) {
       const auto [u, v] = spread(k);
-      offsets_.push_back(filter.place(u, v));
+      const auto [x, y] = filter.place(u, v);
+      x_.push_back(x), y_.push_back(y);
     }
   }
 }
 
-std::span<const std::array<float, 2>> Patterns::of(std::int32_t x, std::int32_t y) const {
+Offsets Patterns::of(std::int32_t x, std::int32_t y) const {
   const num::Int column = num::scatter<num::Int>(num::Int(x));
   const std::uint32_t set = num::scatter<num::Int>(column ^ num::Int(y)).bits() & (sets - 1);
-  return std::span(offsets_).subspan(std::size_t{set} * samples_, samples_);
+  return Offsets{x_, y_}.part(set * samples_, samples_);
 }
 
 }  // namespace pse::antialias

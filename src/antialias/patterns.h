@@ -3,7 +3,6 @@
 // picture, and each pixel takes one by chance, so that no grid shows.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,16 +11,25 @@
 
 namespace pse::antialias {
 
+// Offsets from a pixel's centre, one for each sample.
+struct Offsets {
+  std::span<const float> x, y;
+  std::size_t size() const { return x.size(); }
+  Offsets part(std::size_t first, std::size_t count) const {
+    return {x.subspan(first, count), y.subspan(first, count)};
+  }
+};
+
 class Patterns {
  public:
   Patterns(const Filter& filter, std::uint32_t samples);
 
-  // Offsets from the centre of pixel (x, y): one for each sample.
-  std::span<const std::array<float, 2>> of(std::int32_t x, std::int32_t y) const;
+  // Those of pixel (x, y).
+  Offsets of(std::int32_t x, std::int32_t y) const;
 
  private:
-  std::uint32_t samples_;
-  std::vector<std::array<float, 2>> offsets_;
+  std::size_t samples_;
+  std::vector<float> x_, y_;
 };
 
 }  // namespace pse::antialias

@@ -43,8 +43,10 @@ constexpr float least_share = 0.001f;
 // parabola. Along the normal f is x + b x^2, so f / |f'| is x - b x^2; a bend measured off the edge
 // is made that of the edge.
 float true_distance(float first, float second, float out, float& bend, float s) {
-  constexpr float least = 0.15f, most_b = 1;
+  constexpr float least = 0.15f, most_b = 1, unseen = 0.001f;
   const float measured = bend;
+  // Both say the same of a straight edge.
+  if (std::abs(measured) < unseen && std::abs(second - out - first) < unseen) return first;
   float beside = second, x = first;
   for (int round = 0; round < 3; ++round) {
     bend = measured / std::max(1 - measured * beside, 0.5f);
@@ -58,7 +60,7 @@ float true_distance(float first, float second, float out, float& bend, float s) 
 }  // namespace
 
 std::vector<Refiner::Crossing> Refiner::find_crossings(const std::vector<Pixel>& pixels,
-                                                       std::vector<Pixel>& unclear, Work& work,
+                                                       std::vector<Unclear>& unclear, Work& work,
                                                        RunStatus& status) const {
   Places& places = work.places;
   places.clear();
@@ -70,7 +72,7 @@ std::vector<Refiner::Crossing> Refiner::find_crossings(const std::vector<Pixel>&
     const Line first = line_of(edges, 0, i), second = line_of(edges, 1, i);
     if (!(std::abs(first.distance) <= std::max(farthest_explained, 2 * reach)) ||
         std::abs(second.distance) < reach)
-      unclear.push_back(pixels[i]);
+      unclear.push_back({pixels[i], {first, second}});
     else if (std::abs(first.distance) < reach * 1.2f)
       crossings.push_back({pixels[i], first.distance, first.nx, first.ny});
   }
@@ -79,7 +81,7 @@ std::vector<Refiner::Crossing> Refiner::find_crossings(const std::vector<Pixel>&
 
 // Looks at each edge again, a little along it and on its far side: how it bends, and whether there
 // is another edge.
-void Refiner::follow(std::vector<Crossing>& crossings, std::vector<Pixel>& unclear, Work& work,
+void Refiner::follow(std::vector<Crossing>& crossings, std::vector<Unclear>& unclear, Work& work,
                      RunStatus& status) const {
   const float reach = options_.filter.reach(), s = along * reach;
   Places& places = work.places;
@@ -108,7 +110,7 @@ void Refiner::follow(std::vector<Crossing>& crossings, std::vector<Pixel>& uncle
     const float turn = (line.ny * c.nx - line.nx * c.ny) / cosine;
     if (std::abs(other) < reach || !(std::abs(turn) < most_turn) ||
         !(std::abs(line.distance) < reach)) {
-      unclear.push_back(c.pixel);
+      unclear.push_back({c.pixel, {{c.distance, c.nx, c.ny}, {other, second.nx, second.ny}}});
       continue;
     }
     c.bend = turn / s;
@@ -129,7 +131,7 @@ void Refiner::follow(std::vector<Crossing>& crossings, std::vector<Pixel>& uncle
 // LERP(share, one side, other side), each side where the kernel's weight on it has its middle: what
 // changes evenly on a side then has exactly its mean.
 void Refiner::blend(const Tile& tile, const std::vector<Crossing>& crossings, Refined& result,
-                    std::vector<Pixel>& unclear, Work& work, RunStatus& status) const {
+                    std::vector<Unclear>& unclear, Work& work, RunStatus& status) const {
   Places& places = work.places;
   places.clear();
   for (const Crossing& c : crossings) {
@@ -149,7 +151,7 @@ void Refiner::blend(const Tile& tile, const std::vector<Crossing>& crossings, Re
       doubt = (one_way && differ(sides[o][a], sides[o][b])) ||
               (strange && differ(sides[o][own], tile.planes[o][here]));
     if (doubt) {
-      unclear.push_back(c.pixel);
+      unclear.push_back({c.pixel});
       continue;
     }
     result.pixels.push_back(c.pixel);
@@ -159,15 +161,16 @@ void Refiner::blend(const Tile& tile, const std::vector<Crossing>& crossings, Re
 }
 
 Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts& counts) const {
-  const int around = options_.filter.reach() > 1.01f ? 2 : 1;
-  std::vector<Pixel> pixels = find_edge_pixels(tile, around);
+  std::vector<Pixel> pixels = find_edge_pixels(tile, options_.filter);
   Refined result({}, outputs_);
   if (pixels.empty()) return result;
   counts.filtered += static_cast<std::int64_t>(pixels.size());
   // The program knows the edges within objects, not those of the objects.
   const auto inner = std::ranges::stable_partition(
       pixels, [&](const Pixel& pixel) { return pixel.silhouette || edges_ == nullptr; });
-  std::vector<Pixel> unclear(pixels.begin(), inner.begin());
+  std::vector<Unclear> unclear;
+  for (const Pixel& pixel : std::ranges::subrange(pixels.begin(), inner.begin()))
+    unclear.push_back({pixel});
   pixels.erase(pixels.begin(), inner.begin());
   if (!pixels.empty()) {
     std::vector<Crossing> crossings = find_crossings(pixels, unclear, work, status);
@@ -176,7 +179,7 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
   }
   counts.blended += static_cast<std::int64_t>(result.pixels.size());
   counts.supersampled += static_cast<std::int64_t>(unclear.size());
-  settle(std::move(unclear), result, work, status);
+  settle(unclear, result, work, status);
   return result;
 }
 

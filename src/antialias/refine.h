@@ -2,6 +2,7 @@
 // chapter's "More Detailed Description", pixel by pixel.
 #pragma once
 
+#include "antialias/corner.h"
 #include "antialias/patterns.h"
 #include "antialias/places.h"
 #include "antialias/programs.h"
@@ -50,16 +51,25 @@ class Refiner {
 
  private:
   struct Crossing;
+  // A pixel that needs more than one look, and the edges that are known to be near.
+  struct Unclear {
+    Pixel pixel;
+    Lines lines = {};
+  };
   std::vector<Crossing> find_crossings(const std::vector<Pixel>& pixels,
-                                       std::vector<Pixel>& unclear, Work& work,
+                                       std::vector<Unclear>& unclear, Work& work,
                                        RunStatus& status) const;
-  void follow(std::vector<Crossing>& crossings, std::vector<Pixel>& unclear, Work& work,
+  void follow(std::vector<Crossing>& crossings, std::vector<Unclear>& unclear, Work& work,
               RunStatus& status) const;
   void blend(const Tile& tile, const std::vector<Crossing>& crossings, Refined& result,
-             std::vector<Pixel>& unclear, Work& work, RunStatus& status) const;
-  Refined sample(std::vector<Pixel> pixels, std::uint32_t first, std::uint32_t last,
-                 std::vector<bool>* uneven, Work& work, RunStatus& status) const;
-  void settle(std::vector<Pixel> unclear, Refined& result, Work& work, RunStatus& status) const;
+             std::vector<Unclear>& unclear, Work& work, RunStatus& status) const;
+  template <class Visit>
+  void sample(const std::vector<Pixel>& pixels, std::uint32_t first, std::uint32_t last, Work& work,
+              RunStatus& status, const Visit& visit) const;
+  bool by_regions(const Unclear& pixel, std::uint32_t look, const Results& results, std::size_t at,
+                  std::span<float> values) const;
+  void settle(const std::vector<Unclear>& unclear, Refined& result, Work& work,
+              RunStatus& status) const;
 
   const PlaceRunner& program_;
   const PlaceRunner* edges_;

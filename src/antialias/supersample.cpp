@@ -47,66 +47,125 @@ Summary summary(const float* values, std::size_t count) {
 
 }  // namespace
 
-// Sums of the samples [first, last) of each pixel, and in `uneven` whether they look different.
-Refined Refiner::sample(std::vector<Pixel> pixels, std::uint32_t first, std::uint32_t last,
-                        std::vector<bool>* uneven, Work& work, RunStatus& status) const {
+// Runs the samples [first, last) of each pixel; `visit` gets the pixel's number and where its
+// results begin.
+template <class Visit>
+void Refiner::sample(const std::vector<Pixel>& pixels, std::uint32_t first, std::uint32_t last,
+                     Work& work, RunStatus& status, const Visit& visit) const {
   const std::size_t each = last - first;
-  Refined result(std::move(pixels), outputs_);
-  if (uneven) uneven->assign(result.pixels.size(), false);
   const std::size_t at_once = std::max<std::size_t>(1, most_places / each);
-  for (std::size_t begin = 0; begin < result.pixels.size() && !status.cancel; begin += at_once) {
-    const std::size_t end = std::min(begin + at_once, result.pixels.size());
+  for (std::size_t begin = 0; begin < pixels.size() && !status.cancel; begin += at_once) {
+    const std::size_t end = std::min(begin + at_once, pixels.size());
     Places& places = work.places;
     places.x.resize((end - begin) * each), places.y.resize((end - begin) * each);
     double *to_x = places.x.data(), *to_y = places.y.data();
     for (std::size_t i = begin; i < end; ++i) {
-      const Pixel& pixel = result.pixels[i];
+      const Pixel& pixel = pixels[i];
       const double x = pixel.x + 0.5, y = pixel.y + 0.5;
-      for (const auto& [dx, dy] : patterns_.of(pixel.x, pixel.y).subspan(first, each))
-        *to_x++ = x + double(dx), *to_y++ = y + double(dy);
-    }
-    const Results& values = program_.run(work, status);
-    for (std::size_t o = 0; o < outputs_; ++o)
-      for (std::size_t i = begin; i < end; ++i) {
-        const auto [sum, low, high] = summary(values[o] + (i - begin) * each, each);
-        result.values[o][i] = sum;
-        if (uneven && differ(low, low + (high - low) / mean_per_range)) (*uneven)[i] = true;
+      const Offsets offsets = patterns_.of(pixel.x, pixel.y).part(first, each);
+      for (std::size_t k = 0; k < each; ++k) {
+        *to_x++ = x + double(offsets.x[k]);
+        *to_y++ = y + double(offsets.y[k]);
       }
+    }
+    const Results& results = program_.run(work, status);
+    for (std::size_t i = begin; i < end; ++i) visit(i, results, (i - begin) * each);
   }
-  return result;
 }
 
 Refined Refiner::supersample(std::vector<Pixel> pixels, Work& work, RunStatus& status) const {
   const auto count = static_cast<std::uint32_t>(options_.samples);
-  Refined result = sample(std::move(pixels), 0, count, nullptr, work, status);
-  for (auto& values : result.values)
-    for (float& value : values) value /= static_cast<float>(count);
-  return result;
+  Refined all(std::move(pixels), outputs_);
+  sample(all.pixels, 0, count, work, status,
+         [&](std::size_t i, const Results& results, std::size_t at) {
+           for (std::size_t o = 0; o < outputs_; ++o)
+             all.values[o][i] = summary(results[o] + at, count).sum / static_cast<float>(count);
+         });
+  return all;
 }
 
-// Pixels that turn out even after a first look are left at that.
-void Refiner::settle(std::vector<Pixel> unclear, Refined& result, Work& work,
+// The pixel's values from samples of each region of two edges; false where the samples of a region
+// disagree or there are none.
+bool Refiner::by_regions(const Unclear& pixel, std::uint32_t look, const Results& results,
+                         std::size_t at, std::span<float> values) const {
+  constexpr float least_weight = 0.004f;
+  const float reach = options_.filter.reach();
+  if (!(std::abs(pixel.lines.first.distance) < reach) ||
+      !(std::abs(pixel.lines.second.distance) < reach))
+    return false;
+  const Offsets offsets = patterns_.of(pixel.pixel.x, pixel.pixel.y);
+  const Corner corner(pixel.lines);
+  std::array<std::uint32_t, 4> counts{};
+  std::array<float, 4> paths{};
+  const float* path = results[outputs_] + at;
+  std::array<std::uint8_t, first_look> regions{};
+  for (std::uint32_t k = 0; k < look; ++k) {
+    const std::uint8_t region = regions[k] = corner.region(offsets.x[k], offsets.y[k]);
+    if (region == Corner::unsure) continue;
+    if (counts[region]++ == 0) paths[region] = path[k];
+    if (paths[region] != path[k]) return false;
+  }
+  std::array<float, 4> weights = corner.weights(options_.filter, offsets);
+  float total = 0;
+  for (std::size_t r = 0; r < 4; ++r) {
+    if (counts[r] == 0 && weights[r] > least_weight) return false;
+    if (counts[r] == 0) weights[r] = 0;
+    total += weights[r];
+  }
+  for (std::size_t o = 0; o < outputs_; ++o) {
+    std::array<float, 5> sums{};
+    for (std::uint32_t k = 0; k < look; ++k) sums[regions[k]] += results[o][at + k];
+    float value = 0;
+    for (std::size_t r = 0; r < 4; ++r)
+      if (counts[r] > 0) value += weights[r] / total * (sums[r] / static_cast<float>(counts[r]));
+    values[o] = value;
+  }
+  return true;
+}
+
+// Pixels that turn out even after a first look are left at that, and those whose samples confirm
+// two edges are put together from their regions.
+void Refiner::settle(const std::vector<Unclear>& unclear, Refined& result, Work& work,
                      RunStatus& status) const {
   if (unclear.empty()) return;
   const auto count = static_cast<std::uint32_t>(options_.samples);
   const std::uint32_t look = std::min(first_look, count);
-  std::vector<bool> uneven;
-  const Refined first = sample(std::move(unclear), 0, look, &uneven, work, status);
+  const std::size_t start = result.pixels.size();
+  for (const Unclear& pixel : unclear) result.pixels.push_back(pixel.pixel);
+  for (auto& values : result.values) values.resize(result.pixels.size());
+  const std::vector<Pixel> pixels(result.pixels.begin() + static_cast<std::ptrdiff_t>(start),
+                                  result.pixels.end());
+
   std::vector<Pixel> more;
-  for (std::size_t i = 0; i < uneven.size(); ++i)
-    if (uneven[i] && look < count) more.push_back(first.pixels[i]);
-  Refined rest({}, outputs_);
-  if (!more.empty()) rest = sample(std::move(more), look, count, nullptr, work, status);
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < uneven.size(); ++i) {
-    const bool has_more = uneven[i] && look < count;
-    result.pixels.push_back(first.pixels[i]);
-    for (std::size_t o = 0; o < outputs_; ++o)
-      result.values[o].push_back(has_more ? (first.values[o][i] + rest.values[o][next]) /
-                                                static_cast<float>(count)
-                                          : first.values[o][i] / static_cast<float>(look));
-    if (has_more) ++next;
-  }
+  std::vector<std::size_t> places;  // of these in the result, with the sums of the first look
+  std::vector<float> values(outputs_);
+  sample(pixels, 0, look, work, status, [&](std::size_t i, const Results& results, std::size_t at) {
+    bool is_uneven = false;
+    for (std::size_t o = 0; o < outputs_; ++o) {
+      const auto [sum, low, high] = summary(results[o] + at, look);
+      result.values[o][start + i] = sum;
+      is_uneven = is_uneven || differ(low, low + (high - low) / mean_per_range);
+    }
+    if (is_uneven && look < count) {
+      if (!by_regions(unclear[i], look, results, at, values)) {
+        more.push_back(pixels[i]);
+        places.push_back(start + i);
+        return;
+      }
+      for (std::size_t o = 0; o < outputs_; ++o) result.values[o][start + i] = values[o];
+    } else {
+      for (std::size_t o = 0; o < outputs_; ++o)
+        result.values[o][start + i] /= static_cast<float>(look);
+    }
+  });
+  if (more.empty()) return;
+  sample(
+      more, look, count, work, status, [&](std::size_t i, const Results& results, std::size_t at) {
+        for (std::size_t o = 0; o < outputs_; ++o) {
+          float& value = result.values[o][places[i]];
+          value = (value + summary(results[o] + at, count - look).sum) / static_cast<float>(count);
+        }
+      });
 }
 
 }  // namespace pse::antialias

@@ -1,13 +1,11 @@
-// Comparing neighbours: first paths alone, for all pixels at once, then values where paths differ.
+// Comparing neighbours: first paths alone, for whole rows at once, then values where paths differ.
 #include "antialias/tile.h"
 
-#include <algorithm>
+#include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <utility>
+#include <limits>
 
 namespace pse::antialias {
 namespace {
@@ -15,116 +13,130 @@ namespace {
 // Steps of an output below this, of 1 and of its size, are no edges.
 constexpr float least_step = 0.01f;
 
-// Between the sample `here` and its neighbour `step` samples on: whether some output jumps. The
-// neighbour on the other side tells the slope.
-bool jumps(const Tile& tile, std::size_t here, std::ptrdiff_t step) {
-  for (std::size_t o = 0; o < tile.outputs; ++o) {
-    const float* at = tile.planes[o] + here;
-    const float value = at[0], there = at[step];
-    if (!differ(value, there)) continue;
-    const float slope = value - at[-step], expected = value + slope;
-    // A step as small as that cannot be told from the texture's own detail.
-    const float least = least_step * (1 + std::max(std::abs(value), std::abs(there)));
-    const float beyond = std::abs(there - expected);
-    if (!(beyond <= std::max(std::abs(slope), least))) return true;
-  }
-  return false;
+// Four values side by side, and four answers: 0 or -1.
+using Four = float __attribute__((vector_size(16)));
+using Answers = std::int32_t __attribute__((vector_size(16)));
+
+Four size(Four values) {
+  const Answers bits = std::bit_cast<Answers>(values) & 0x7fffffff;
+  return std::bit_cast<Four>(bits);
+}
+Four larger(Four a, Four b) { return a > b ? a : b; }
+bool any(Answers answers) {
+  const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(answers);
+  return (halves[0] | halves[1]) != 0;
 }
 
-// Steps to all samples within reach, the nearest first.
-std::vector<std::ptrdiff_t> neighbours(const Tile& tile, int reach) {
-  std::vector<std::pair<int, std::ptrdiff_t>> found;
-  for (int dy = -reach; dy <= reach; ++dy)
-    for (int dx = -reach; dx <= reach; ++dx)
-      if (dx != 0 || dy != 0)
-        found.push_back({dx * dx + dy * dy, dy * std::ptrdiff_t{tile.area.width()} + dx});
-  std::ranges::sort(found);
-  std::vector<std::ptrdiff_t> steps;
-  for (const auto& [far, step] : found) steps.push_back(step);
-  return steps;
+// From a sample with `value` to the samples `there`, where those on its other side have `opposite`:
+// whether an output jumps. As differ(), without branches.
+Answers jumps(float value, Four there, Four opposite) {
+  constexpr float huge = std::numeric_limits<float>::max();
+  const Four here = Four{} + value;
+  const Four apart = size(here - there), largest = larger(size(here), size(there));
+  const Answers is_same = (apart <= differ_least + differ_relative * largest) & (apart <= huge);
+  const Answers both_nan = (here != here) & (there != there);
+  // The neighbour on the other side tells the slope. A step as small as `least` cannot be told from
+  // the texture's own detail.
+  const Four slope = here - opposite, least = least_step * (1 + largest);
+  const Four beyond = size(there - (here + slope)), allowed = larger(size(slope), least);
+  return ~(is_same | both_nan | (here == there) | (beyond <= allowed));
 }
 
-// Where paths change in the area of a tile: for each pixel of each row the bits by which the paths
-// of pixels within `reach` columns differ, and those by which the path below does.
-class Changes {
+// Four neighbours of a sample: two and those on their other sides.
+struct Neighbours {
+  std::ptrdiff_t a, b;
+
+  Four operator()(const float* at) const { return Four{at[a], at[-a], at[b], at[-b]}; }
+  static Four opposite(Four values) { return __builtin_shufflevector(values, values, 1, 0, 3, 2); }
+};
+
+// The first `count` of: along the axes, along the diagonals (corners reach into pixels from there),
+// two pixels away.
+template <std::size_t count>
+std::array<Neighbours, count> neighbours(std::ptrdiff_t width) {
+  const std::array<Neighbours, 6> all = {{{1, width},
+                                          {width - 1, width + 1},
+                                          {2, 2 * width},
+                                          {2 * width - 2, 2 * width + 2},
+                                          {2 * width - 1, 2 * width + 1},
+                                          {width - 2, width + 2}}};
+  std::array<Neighbours, count> some;
+  std::copy_n(all.begin(), count, some.begin());
+  return some;
+}
+
+template <std::size_t count>
+class Search {
  public:
-  Changes(const Tile& tile, int reach)
-      : tile_(tile), reach_(reach), width_(static_cast<std::size_t>(tile.rect.width())) {
-    const Rect& area = tile.area;
-    const auto rows = static_cast<std::size_t>(area.height());
-    along_.resize(rows * width_), below_.resize(rows * width_);
-    rows_.resize(rows);
-    std::vector<std::uint32_t> steps(width_ + 2 * static_cast<std::size_t>(reach));
-    for (int y = area.y0; y < area.y1; ++y) {
-      const float* path = tile.path() + tile.at(tile.rect.x0 - reach, y);
-      difference(path, path + 1, steps.size() - 1, steps.data());
-      std::uint32_t* along = along_.data() + at(y);
-      for (int k = 0; k < 2 * reach; ++k)
-        for (std::size_t x = 0; x < width_; ++x) along[x] |= steps[x + static_cast<std::size_t>(k)];
-      const float* here = tile.path() + tile.at(tile.rect.x0, y);
-      if (y + 1 < area.y1) difference(here, here + area.width(), width_, below_.data() + at(y));
-      std::uint32_t any = 0;
-      for (std::size_t x = 0; x < width_; ++x) any |= along[x] | below_[at(y) + x];
-      rows_[static_cast<std::size_t>(y - area.y0)] = any != 0;
-    }
-  }
+  explicit Search(const Tile& tile) : tile_(tile), around_(neighbours<count>(tile.area.width())) {}
 
-  // Into `changes`, for each pixel of row y: not 0 where some path within reach is another. False
-  // where the whole row has none.
-  bool around(int y, std::span<std::uint32_t> changes) const {
-    const int first = y - reach_, last = y + reach_;
-    const auto of_row = [&](int row) { return rows_.begin() + (row - tile_.area.y0); };
-    if (std::none_of(of_row(first), of_row(last) + 1, std::identity())) return false;
-    std::ranges::fill(changes, 0u);
-    for (int row = first; row <= last; ++row) {
-      for (std::size_t x = 0; x < width_; ++x) changes[x] |= along_[at(row) + x];
-      if (row == last) break;
-      for (std::size_t x = 0; x < width_; ++x) changes[x] |= below_[at(row) + x];
+  std::vector<Pixel> run() const {
+    std::vector<Pixel> found;
+    std::vector<std::uint32_t> changes(static_cast<std::size_t>(tile_.rect.width()));
+    for (int y = tile_.rect.y0; y < tile_.rect.y1; ++y) {
+      const std::size_t first = tile_.at(tile_.rect.x0, y);
+      if (!paths_change(first, changes)) continue;
+      for (std::size_t i = 0; i < changes.size(); ++i) {
+        bool silhouette = false;
+        if (changes[i] != 0 && is_edge(first + i, silhouette))
+          found.push_back({tile_.rect.x0 + static_cast<int>(i), y, silhouette});
+      }
     }
-    return true;
+    return found;
   }
 
  private:
-  std::size_t at(int y) const { return static_cast<std::size_t>(y - tile_.area.y0) * width_; }
+  // For the samples of a row: not 0 where a neighbour's path is another. Whether there is any.
+  bool paths_change(std::size_t first, std::span<std::uint32_t> changes) const {
+    const float* path = tile_.path() + first;
+    const auto bits = [path](std::ptrdiff_t at) { return std::bit_cast<std::uint32_t>(path[at]); };
+    std::uint32_t any = 0;
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+      const auto x = static_cast<std::ptrdiff_t>(i);
+      const std::uint32_t here = bits(x);
+      std::uint32_t change = 0;
+      for (const auto& [a, b] : around_)
+        change |= (bits(x + a) ^ here) | (bits(x - a) ^ here) | (bits(x + b) ^ here) |
+                  (bits(x - b) ^ here);
+      changes[i] = change;
+      any |= change;
+    }
+    return any != 0;
+  }
 
-  static void difference(const float* a, const float* b, std::size_t count, std::uint32_t* out) {
-    for (std::size_t i = 0; i < count; ++i)
-      out[i] = std::bit_cast<std::uint32_t>(a[i]) ^ std::bit_cast<std::uint32_t>(b[i]);
+  // Whether an output jumps towards a neighbour with another path; and for one of these
+  // (`silhouette`) also the object is another.
+  bool is_edge(std::size_t here, bool& silhouette) const {
+    const float* path = tile_.path() + here;
+    bool edge = false;
+    for (std::size_t o = 0; o < tile_.outputs; ++o) {
+      const float* at = tile_.planes[o] + here;
+      Answers found{}, objects{};
+      for (const Neighbours& four : around_) {
+        const Four there = four(at);
+        // Most ways through a program end in the same place.
+        if (!any(~(size(there - *at) <= differ_least))) continue;
+        const Answers jump = jumps(*at, there, Neighbours::opposite(there)) & (four(path) != *path);
+        found |= jump;
+        if (tile_.ids) objects |= jump & (four(tile_.ids + here) != tile_.ids[here]);
+      }
+      edge = edge || any(found);
+      silhouette = silhouette || any(objects);
+      if (edge && (!tile_.ids || silhouette)) break;
+    }
+    return edge;
   }
 
   const Tile& tile_;
-  const int reach_;
-  const std::size_t width_;
-  std::vector<std::uint32_t> along_, below_;
-  std::vector<std::uint8_t> rows_;  // whether anything changes in or below a row
+  const std::array<Neighbours, count> around_;
 };
 
 }  // namespace
 
-std::vector<Pixel> find_edge_pixels(const Tile& tile, int reach) {
-  std::vector<Pixel> found;
-  const Changes all(tile, reach);
-  const std::vector<std::ptrdiff_t> steps = neighbours(tile, reach);
-  std::vector<std::uint32_t> changes(static_cast<std::size_t>(tile.rect.width()));
-  for (int y = tile.rect.y0; y < tile.rect.y1; ++y) {
-    if (!all.around(y, changes)) continue;
-    const std::size_t first = tile.at(tile.rect.x0, y);
-    for (std::size_t i = 0; i < changes.size(); ++i) {
-      if (changes[i] == 0) continue;
-      const std::size_t here = first + i;
-      const float* path = tile.path() + here;
-      bool edge = false, silhouette = false;
-      for (const std::ptrdiff_t step : steps) {
-        if (path[0] == path[step] || !jumps(tile, here, step)) continue;
-        edge = true;
-        if (!tile.ids) break;
-        silhouette = tile.ids[here] != (tile.ids + here)[step];
-        if (silhouette) break;
-      }
-      if (edge) found.push_back({tile.rect.x0 + static_cast<int>(i), y, silhouette});
-    }
-  }
-  return found;
+int apron_of(const Filter& filter) { return filter.reach() > 1.01f ? 2 : 1; }
+
+std::vector<Pixel> find_edge_pixels(const Tile& tile, const Filter& filter) {
+  return apron_of(filter) == 1 ? Search<2>(tile).run() : Search<6>(tile).run();
 }
 
 }  // namespace pse::antialias

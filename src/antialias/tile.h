@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "antialias/filter.h"
 #include "stream/executor.h"
 
 namespace pse::antialias {
@@ -28,19 +29,23 @@ struct Pixel {
   bool silhouette = false;  // a neighbour shows another object
 };
 
-// Whether two values of an output look different.
+// Whether two values of an output look different; they do not where they are nearer than this.
+inline constexpr float differ_least = 0.002f, differ_relative = 0.004f;
 inline bool differ(float a, float b) {
-  constexpr float absolute = 0.002f, relative = 0.004f;
   const float apart = std::abs(a - b);
-  if (apart <= absolute) return false;
+  if (apart <= differ_least) return false;
   if (a == b || (std::isnan(a) && std::isnan(b))) return false;
-  return !(apart <= absolute + relative * std::max(std::abs(a), std::abs(b))) || std::isinf(apart);
+  return !(apart <= differ_least + differ_relative * std::max(std::abs(a), std::abs(b))) ||
+         std::isinf(apart);
 }
 
-// The pixels of tile.rect that have a neighbour within `reach` pixels (1 or 2) whose path is
-// another, across which some output jumps: more than its slope on the near side explains. In
-// row-major order. tile.area must reach that far around tile.rect. Depends on nothing but the
-// samples within `reach` of each pixel.
-std::vector<Pixel> find_edge_pixels(const Tile& tile, int reach);
+// How many pixels around a tile find_edge_pixels() looks at.
+int apron_of(const Filter& filter);
+
+// The pixels of tile.rect that have a neighbour whose path is another, across which some output
+// jumps: more than its slope on the near side explains. In row-major order. Neighbours are the
+// samples that an edge under the kernel separates from the pixel; tile.area must reach apron_of()
+// pixels around tile.rect. Depends on nothing but those samples.
+std::vector<Pixel> find_edge_pixels(const Tile& tile, const Filter& filter);
 
 }  // namespace pse::antialias

@@ -1,0 +1,35 @@
+// Two edges under one kernel: they part it into up to four regions, and samples of each region tell
+// its value. The kernel's weight of a region is known far better than a share of the samples: for
+// each edge alone it is exact (filter.h). 2002 chapter, "More Detailed Description", where such
+// pixels go to supersampling at once.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "antialias/derive.h"
+#include "antialias/filter.h"
+#include "antialias/patterns.h"
+
+namespace pse::antialias {
+
+struct Lines {
+  Line first{no_edge, 1, 0}, second{no_edge, 1, 0};  // as seen from the pixel's centre
+};
+
+class Corner {
+ public:
+  explicit Corner(const Lines& lines) : lines_(lines) {}
+
+  // The region of a place, 0 to 3; unsure where it is so near to a line that it may lie beyond it.
+  static constexpr std::uint8_t unsure = 4;
+  std::uint8_t region(float x, float y) const;
+
+  // The kernel's weights of the regions. `offsets`: places that follow the kernel.
+  std::array<float, 4> weights(const Filter& filter, const Offsets& offsets) const;
+
+ private:
+  Lines lines_;
+};
+
+}  // namespace pse::antialias

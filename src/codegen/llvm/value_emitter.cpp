@@ -146,18 +146,14 @@ llvm::Value* FunctionEmitter::emit_value(const ir::Instruction& in) {
       return b_.getInt1(in.imm != 0);
     case Op::input:
       return emit_input(in);
-    case Op::fadd:
-      return b_.CreateFAdd(arg(0), arg(1));
     case Op::fsub:
       return b_.CreateFSub(arg(0), arg(1));
-    case Op::fmul:
-      return b_.CreateFMul(arg(0), arg(1));
     case Op::fdiv:
       return divide(arg(0), arg(1));
-    case Op::fma: {
-      llvm::Value* a = arg(0);
-      return b_.CreateIntrinsic(llvm::Intrinsic::fma, {a->getType()}, {a, arg(1), arg(2)});
-    }
+    case Op::fadd:
+    case Op::fmul:
+    case Op::fma:
+      return multiply_add(in, wide);
     case Op::fneg:
       return b_.CreateFNeg(arg(0));
     case Op::fabs:
@@ -244,7 +240,7 @@ llvm::Value* FunctionEmitter::emit_value(const ir::Instruction& in) {
     case Op::bytes_add:
       return bytes_add(arg(0), arg(1));
     case Op::bytes_lookup:
-      return bytes_lookup(ir_.byte_tables[index], arg(0));
+      return bytes_lookup(ir_.byte_tables[index], arg(0), (asked_[in.result()] & 0xf0f0f0f0u) == 0);
     case Op::array_load:
       return emit_array_load(in);
     case Op::array_length:

@@ -20,15 +20,21 @@ struct alignas(32) Row {
 };
 
 // Rows 0 to 15 are the permutation; shared rows have the low halves of two rows' entries in one
-// byte; gradients are bytes.
+// byte; gradients are bytes; pairs are the entries of a coordinate and of the next, twice.
 struct Tables {
   std::array<Row, 16> whole;
   std::array<Row, 8> shared;
   std::array<Row, 3> gradient;
+  std::array<std::int32_t, 256> pairs;
 };
 
 Tables make_tables() {
   Tables t;
+  for (std::size_t i = 0; i < 256; ++i) {
+    const std::uint32_t low = num::permutation.entries[i],
+                        high = num::permutation.entries[(i + 1) & 255];
+    t.pairs[i] = static_cast<std::int32_t>((low | high << 8) * 0x00010001u);
+  }
   for (std::size_t i = 0; i < 32; ++i) {
     const auto entry = [&](std::size_t row) { return num::permutation.entries[16 * row + i % 16]; };
     for (std::size_t row = 0; row < 16; ++row) t.whole[row].bytes[i] = entry(row);
@@ -154,9 +160,10 @@ inline void noise(const Tables& tables, const float* x, const float* y, const fl
   const auto load = [](const float* from, std::size_t i) { return _mm256_loadu_ps(from + 8 * i); };
   const auto floor = [](F value) { return _mm256_round_ps(value, 0x09); };
   Words<count> hashes;
-  for (std::size_t i = 0; i < count; ++i)
-    hashes[i] = _mm256_add_epi8(lattice(floor(load(x, i))), _mm256_set1_epi32(0x01000100));
-  hashes = permute(tables, hashes);
+  for (std::size_t i = 0; i < count; ++i) {
+    const I byte = _mm256_and_si256(_mm256_cvttps_epi32(floor(load(x, i))), _mm256_set1_epi32(255));
+    hashes[i] = _mm256_i32gather_epi32(tables.pairs.data(), byte, 4);
+  }
   for (std::size_t i = 0; i < count; ++i) {
     const I step = _mm256_set1_epi32(0x01010000);
     hashes[i] = _mm256_add_epi8(hashes[i], _mm256_add_epi8(lattice(floor(load(y, i))), step));
@@ -169,9 +176,9 @@ inline void noise(const Tables& tables, const float* x, const float* y, const fl
       const F value = load(from, i);
       return _mm256_sub_ps(value, floor(value));
     };
-    _mm256_storeu_ps(out + 8 * i, interpolate(tables, place(x), place(y), place(z),
-                                              permute_low<1>(tables, {low})[0],
-                                              permute_low<1>(tables, {high})[0]));
+    const Words<2> both = permute_low<2>(tables, {low, high});
+    _mm256_storeu_ps(out + 8 * i,
+                     interpolate(tables, place(x), place(y), place(z), both[0], both[1]));
   }
 }
 

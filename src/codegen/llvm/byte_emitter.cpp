@@ -10,8 +10,17 @@ namespace pse {
 
 llvm::Value* FunctionEmitter::bytes_add(llvm::Value* x, llvm::Value* y) {
   llvm::Type* bytes = lanes_type(b_.getInt8Ty(), 4 * lanes_of(x));
-  return b_.CreateBitCast(b_.CreateAdd(b_.CreateBitCast(x, bytes), b_.CreateBitCast(y, bytes)),
-                          x->getType());
+  llvm::Value* sum = b_.CreateBitCast(
+      b_.CreateAdd(b_.CreateBitCast(x, bytes), b_.CreateBitCast(y, bytes)), x->getType());
+  // A repeated byte with a constant added to each place: known by that byte alone.
+  const auto byte = repeated_bytes_.find(x);
+  auto* constant = llvm::dyn_cast<llvm::Constant>(y);
+  if (constant) constant = constant->getSplatValue();
+  if (const auto* added = llvm::dyn_cast_or_null<llvm::ConstantInt>(constant);
+      added && byte != repeated_bytes_.end()) {
+    spread_bytes_[sum] = {byte->second, static_cast<std::uint32_t>(added->getZExtValue())};
+  }
+  return sum;
 }
 
 // Each byte is the index of one of 16; where its top bit is set the result is 0.
@@ -43,6 +52,10 @@ llvm::Value* FunctionEmitter::choose_bytes(llvm::Value* mask, llvm::Value* yes, 
 llvm::Value* FunctionEmitter::bytes_lookup(const ir::ByteTable& table, llvm::Value* index,
                                            bool low_half) {
   if (lanes_of(index) == 1) return bytes_lookup_scalar(table, index);
+  if (const auto spread = spread_bytes_.find(index);
+      spread != spread_bytes_.end() && parent_.target().avx2 && !parent_.target().vbmi) {
+    return spread_byte_lookup(table, spread->second.first, spread->second.second);
+  }
   llvm::Value* bytes = b_.CreateBitCast(index, lanes_type(b_.getInt8Ty(), 4 * lanes_of(index)));
   const unsigned piece = parent_.byte_piece(lanes_of(bytes));
   const auto lookup = [&](llvm::Value* v) {
@@ -51,6 +64,19 @@ llvm::Value* FunctionEmitter::bytes_lookup(const ir::ByteTable& table, llvm::Val
     return low_half ? low_half_lookup(table, v) : bytes_lookup_blends(table, v);
   };
   return b_.CreateBitCast(by_pieces(b_, bytes, piece, lookup), index->getType());
+}
+
+// What the four sums of one byte with the bytes of `added` find: one entry of a table of words.
+llvm::Value* FunctionEmitter::spread_byte_lookup(const ir::ByteTable& table, llvm::Value* byte,
+                                                 std::uint32_t added) {
+  llvm::SmallVector<llvm::Constant*, 256> words;
+  for (std::uint32_t i = 0; i < 256; ++i) {
+    std::uint32_t word = 0;
+    for (unsigned shift = 0; shift < 32; shift += 8)
+      word |= std::uint32_t{table.entries[(i + (added >> shift)) & 255]} << shift;
+    words.push_back(b_.getInt32(word));
+  }
+  return table_lookup(words, byte);
 }
 
 // The table in four registers: two lookups in 128 entries each, and the top bit chooses.

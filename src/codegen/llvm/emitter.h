@@ -117,6 +117,8 @@ class FunctionEmitter {
   llvm::Value* choose_row(llvm::ArrayRef<std::uint8_t> rows, std::size_t first, std::size_t count,
                           llvm::Value* low, llvm::ArrayRef<llvm::Value*> on_top);
   llvm::Value* bytes_lookup(const ir::ByteTable& table, llvm::Value* index, bool low_half);
+  llvm::Value* spread_byte_lookup(const ir::ByteTable& table, llvm::Value* byte,
+                                  std::uint32_t added);
   llvm::Value* bytes_lookup_vbmi(const ir::ByteTable& table, llvm::Value* bytes);
   llvm::Value* bytes_lookup_blends(const ir::ByteTable& table, llvm::Value* bytes);
   llvm::Value* low_half_lookup(const ir::ByteTable& table, llvm::Value* bytes);
@@ -190,6 +192,9 @@ class FunctionEmitter {
       found_bytes_;
   std::map<llvm::Value*, llvm::Value*> halves_;
   std::map<std::pair<llvm::BasicBlock*, llvm::Value*>, llvm::Value*> doubled_;
+  // Words that hold one byte four times, and the byte; the same with a constant added.
+  std::map<llvm::Value*, llvm::Value*> repeated_bytes_;
+  std::map<llvm::Value*, std::pair<llvm::Value*, std::uint32_t>> spread_bytes_;
   std::vector<llvm::Value*>
       inputs_;  // per Module::inputs: the value if uniform, the array if of rate sample
   std::vector<bool> input_used_;

@@ -65,7 +65,9 @@ llvm::Value* FunctionEmitter::multiply(llvm::Value* x, llvm::Value* y) {
   llvm::SmallVector<int, 128> low_bytes;
   for (unsigned i = 0; i < 4 * lanes; ++i) low_bytes.push_back(static_cast<int>(i & ~3u));
   llvm::Value* bytes = b_.CreateBitCast(source, lanes_type(b_.getInt8Ty(), 4 * lanes));
-  return b_.CreateBitCast(b_.CreateShuffleVector(bytes, low_bytes), x->getType());
+  llvm::Value* word = b_.CreateBitCast(b_.CreateShuffleVector(bytes, low_bytes), x->getType());
+  repeated_bytes_[word] = source;
+  return word;
 }
 
 // cvttps2dq gives -2^31 where the value does not fit; LLVM's own fptosi would be undefined there.

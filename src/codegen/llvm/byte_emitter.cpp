@@ -53,7 +53,7 @@ llvm::Value* FunctionEmitter::bytes_lookup(const ir::ByteTable& table, llvm::Val
                                            bool low_half) {
   if (lanes_of(index) == 1) return bytes_lookup_scalar(table, index);
   if (const auto spread = spread_bytes_.find(index);
-      spread != spread_bytes_.end() && parent_.target().avx2 && !parent_.target().vbmi) {
+      spread != spread_bytes_.end() && parent_.target().avx2 && !parent_.target().avx512) {
     return spread_byte_lookup(table, spread->second.first, spread->second.second);
   }
   llvm::Value* bytes = b_.CreateBitCast(index, lanes_type(b_.getInt8Ty(), 4 * lanes_of(index)));

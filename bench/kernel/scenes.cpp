@@ -5,6 +5,7 @@
 
 #include "lower/ir_value.h"
 #include "noise/improved.h"
+#include "noise/power.h"
 
 namespace pse::bench {
 namespace {
@@ -115,6 +116,18 @@ Scene gradient_noise() {
   return std::move(w.scene);
 }
 
+// |x| to a power that varies, and to one that does not: what shading and marching spend beside
+// noise.
+Scene power(bool varies) {
+  Writer w(varies ? "|x| ^ y" : "|x| ^ 5.5", 1);
+  const auto exponent = [varies](auto y) { return varies ? y : decltype(y)(5.5f); };
+  w.output(num::pow(absolute(w.point[0]) * IrFloat(0.125f), exponent(w.point[1])));
+  w.scene.expected = [exponent](float x, float y, float) {
+    return num::pow(absolute(x) * 0.125f, exponent(y));
+  };
+  return std::move(w.scene);
+}
+
 template <class F>
 Scene octave_scene(const std::string& name, int count, bool unrolled, const F& f) {
   Writer w(name, count);
@@ -131,6 +144,8 @@ std::vector<Scene> noise_scenes() {
   std::vector<Scene> scenes;
   scenes.push_back(noise());
   scenes.push_back(gradient_noise());
+  scenes.push_back(power(true));
+  scenes.push_back(power(false));
   scenes.push_back(octave_scene("turbulence, 6 octaves, loop", 6, false, absolute));
   scenes.push_back(octave_scene("turbulence, 6 octaves, unrolled", 6, true, absolute));
   scenes.push_back(octave_scene("fbm8, loop", 8, false, plain));

@@ -24,51 +24,72 @@ auto power_of_two(const I& n) {
   return from_bits((n + I(127)) << I(23));
 }
 
-// a 2^n with one rounding, for a near 1 and n in [-252, 254].
+// The whole number nearest to a number in [-252, 254], halves to even: as a float, and plus 254 in
+// the low bits of an integer.
 template <class F>
-F scale_by_power(const F& a, const F& n) {
-  const IntOf<F> whole = to_int(n);
-  const IntOf<F> half = sar(whole, IntOf<F>(1));
-  return a * power_of_two(half) * power_of_two(whole - half);
+struct Nearest {
+  F number;
+  IntOf<F> plus_254;
+};
+template <class F>
+Nearest<F> nearest(const F& x) {
+  // Floats from 2^23 on are whole; 2^22 more keeps the sum of a negative x among them.
+  constexpr float shift = 0x1.8p23f + 254;
+  const F sum = x + shift;
+  return {sum - shift, bits(sum)};
+}
+
+// a 2^n with one rounding, for a near 1.
+template <class F>
+F scale_by_power(const F& a, const Nearest<F>& n) {
+  using I = IntOf<F>;
+  // n + 254 as the sum of two exponents with their bias.
+  const I half = n.plus_254 >> I(1);
+  return a * from_bits(half << I(23)) * from_bits((n.plus_254 - half) << I(23));
 }
 
 // x = n ln 2 + r with |r| <= ln 2 / 2.
 template <class F>
-F exp_reduce(const F& x, F& n) {
-  n = round(x * log2_of_e);
-  return fma(n, F(-ln_of_2_rest), fma(n, F(-ln_of_2), x));
+F exp_reduce(const F& x, Nearest<F>& n) {
+  n = nearest(x * log2_of_e);
+  return fma(n.number, F(-ln_of_2_rest), fma(n.number, F(-ln_of_2), x));
 }
 
 // e^x. Error below 1.1 ulp; NaN for NaN.
 template <class F>
 F exp(const F& x) {
-  F n;
+  Nearest<F> n;
   const F r = exp_reduce(cut(x, -104.0f, 89.0f), n);
   const F q = polynomial(r, {0.5f, 0.166665331f, 0.0416672193f, 0.00836757943f, 0.00138656329f});
   return scale_by_power(1.0f + fma(r * r, q, r), n);
+}
+
+// 2^r for |r| <= 1/2.
+template <class F>
+F exp2_reduced(const F& r) {
+  const F q = polynomial(r, {0.693147182f, 0.240226507f, 0.0555035807f, 0.00961808022f,
+                             0.00133916701f, 0.000154546928f});
+  return fma(r, q, F(1.0f));
 }
 
 // 2^x. Error below 1 ulp; exact for whole x; NaN for NaN.
 template <class F>
 F exp2(const F& x) {
   const F kept = cut(x, -151.0f, 129.0f);
-  const F n = round(kept);
-  const F r = kept - n;
-  const F q = polynomial(r, {0.693147182f, 0.240226507f, 0.0555035807f, 0.00961808022f,
-                             0.00133916701f, 0.000154546928f});
-  return scale_by_power(fma(r, q, F(1.0f)), n);
+  const Nearest<F> n = nearest(kept);
+  return scale_by_power(exp2_reduced<F>(kept - n.number), n);
 }
 
 // e^x - 1, precise near 0. Error below 1.5 ulp; keeps -0; NaN for NaN.
 template <class F>
 F expm1(const F& x) {
-  F n;
+  Nearest<F> n;
   const F r = exp_reduce(cut(x, -30.0f, 89.0f), n);
   const F q = polynomial(
       r, {0.5f, 0.166666672f, 0.0416664816f, 0.00833321176f, 0.00139333541f, 0.000199404138f});
   const F e = fma(r * r, q, r);
   // 2^n (1 + e) - 1 by way of 2^(n-1), which is in range for every n.
-  const F s = power_of_two(to_int(n) - 1);
+  const F s = power_of_two(n.plus_254 - 255);
   return select(x == 0.0f, x, 2.0f * fma(s, e, s - 0.5f));
 }
 

@@ -8,10 +8,11 @@ namespace pse::num {
 // e^x / 2, finite wherever it is below the largest float.
 template <class F>
 F half_exp(const F& x) {
-  F n;
+  Nearest<F> n;
   const F r = exp_reduce(cut(x, -104.0f, 90.0f), n);
   const F q = polynomial(r, {0.5f, 0.166665331f, 0.0416672193f, 0.00836757943f, 0.00138656329f});
-  return scale_by_power(1.0f + fma(r * r, q, r), n - 1.0f);
+  n.plus_254 = n.plus_254 - IntOf<F>(1);
+  return scale_by_power(1.0f + fma(r * r, q, r), n);
 }
 
 // Error below 1.7 ulp; keeps -0; NaN for NaN.

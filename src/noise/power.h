@@ -3,48 +3,40 @@
 
 #include "noise/exp_log.h"
 #include "noise/number.h"
+#include "noise/tables.h"
 
 namespace pse::num {
 
-// a + b = high + low exactly, for |a| >= |b| or a = 0.
-template <class F>
-void fast_two_sum(const F& a, const F& b, F& high, F& low) {
-  high = a + b;
-  low = b - (high - a);
-}
-
-// log2(x) = high + low to about 35 bits, for positive finite x.
+// log2(x) = high + low to about 32 bits of the result, for positive finite x.
 template <class F>
 void log2_in_two(const F& x, F& high, F& low) {
-  const Split<F> s = split(x);
-  // t = f / (2 + f) in two parts; log(1 + f) = 2 (t + t^3 / 3 + t^5 / 5 + ...).
-  const F d = 2.0f + s.f;
-  const F d_rest = s.f - (d - 2.0f);
-  const F reciprocal = 1.0f / d;
-  const F t = s.f * reciprocal;
-  const F t_rest = reciprocal * fma(-t, d_rest, fma(-t, d, s.f));
-  // The cubic term in two parts as well: t^2 (c + ...) times t.
-  constexpr float c = 0.961796701f, c_rest = -7.02846181e-9f;
-  const F t2 = t * t;
-  const F t2_rest = fma(t, t, -t2);
-  const F cubic = t2 * c;
-  const F cubic_rest = fma(t2, F(c), -cubic) + fma(t2_rest, F(c), t2 * c_rest);
-  const F higher =
-      fma(t2 * t2, polynomial(t2, {0.57708025f, 0.411844313f, 0.337947696f}), cubic_rest);
-  const F term = t * cubic;
-  const F term_rest = fma(t, cubic, -term) + t * higher;
-  // 2 / ln 2 times t, and the exponent.
-  constexpr float k = 2.88539004f, k_rest = 3.85192607e-8f;
-  const F linear = t * k;
-  const F linear_rest = fma(t, F(k), -linear) + fma(t, F(k_rest), t_rest * fma(t2, F(k), F(k)));
-  F mantissa, mantissa_rest, sum, sum_rest;
-  fast_two_sum(linear, term, mantissa, mantissa_rest);
-  fast_two_sum(s.e, mantissa, sum, sum_rest);
-  fast_two_sum(sum, sum_rest + (mantissa_rest + (linear_rest + term_rest)), high, low);
+  using I = IntOf<F>;
+  // Subnormal numbers are first made normal.
+  const BoolOf<F> tiny = x < 1.17549435e-38f;
+  const I all = bits(select(tiny, x * 8388608.0f, x));
+  // x = 2^e m, and m c = 1 + f exactly with |f| <= 1/16, c by eighths of an octave.
+  const I above = all - I(0x3f355556);
+  const I exponent = sar(above, I(23)), eighth = above >> I(20);
+  const F m = from_bits(all - (exponent << I(23)));
+  const F f = fma(m, lookup(octave_factor, eighth), F(-1.0f));
+  // e - log2(c) is exact but for a rest.
+  const F e = to_float(exponent - select(tiny, I(23), I(0)));
+  const F whole = e + lookup(octave_log2, eighth);
+  // log2(1 + f) = f / ln 2 + f^2 (q0 + f q).
+  const F linear = f * log2_of_e;
+  const F linear_rest = fma(f, F(log2_of_e_rest), fma(f, F(log2_of_e), -linear));
+  const F q = polynomial(f, {-0.7213475108146667f, 0.48089736700057983f, -0.3606823980808258f,
+                             0.2895464301109314f, -0.23942330479621887f});
+  const F rest = fma(f * f, q, linear_rest) + lookup(octave_log2_rest, eighth);
+  const F sum = whole + linear;
+  const F sum_rest = (linear - (sum - whole)) + rest;
+  high = sum + sum_rest;
+  low = sum_rest - (high - sum);
 }
 
 // x^y by the rules of IEEE pow, among them: x^0 = 1^y = 1 even for NaN; NaN where x < 0 and y is
-// not whole. x^1 = x and whole powers of two are exact. Error below 1 ulp.
+// not whole. x^1 = x and whole powers of two are exact. Error below 1 ulp and 1/18 more for
+// each octave that the result is away from 1: 8 at the ends of the range.
 template <class F>
 F pow(const F& x, const F& y) {
   using I = IntOf<F>;
@@ -52,33 +44,28 @@ F pow(const F& x, const F& y) {
   F high, low;
   log2_in_two(a, high, low);
 
-  // 2^(y log2 a), the exponent in two parts.
-  const F product = y * high;
+  // 2^(y log2 a), the exponent in two parts. A larger y says no more, but could overflow.
+  const F power = cut(y, -0x1p33f, 0x1p33f);
+  const F product = power * high;
   const F kept = cut(product, -180.0f, 180.0f);
-  const F rest = select(kept == product, fma(y, high, -product) + y * low, F(0.0f));
-  const F n = round(kept);
-  const F r = (kept - n) + rest;
-  const F q = polynomial(r, {0.693147182f, 0.240226507f, 0.0555035807f, 0.00961808022f,
-                             0.00133916701f, 0.000154546928f});
-  const F computed = scale_by_power(fma(r, q, F(1.0f)), n);
+  const F rest = select(kept == product, fma(power, high, -product) + power * low, F(0.0f));
+  const Nearest<F> n = nearest(kept);
+  const F computed = scale_by_power(exp2_reduced<F>((kept - n.number) + rest), n);
 
-  // Where a is 0, 1 or infinite, or y is infinite, the magnitude is 0, 1 or infinity.
-  const BoolOf<F> grows = either(both(a > 1.0f, y > 0.0f), both(a < 1.0f, y < 0.0f));
-  const F limit = select(a == 1.0f, F(1.0f), select(grows, F(infinity), F(0.0f)));
-  const BoolOf<F> at_limit =
-      either(either(a == 0.0f, a == infinity), either(a == 1.0f, abs(y) == infinity));
-  const F magnitude = select(at_limit, limit, computed);
+  // Of 0 and infinity it is one of them; of NaN it is NaN.
+  const BoolOf<F> grows = y > 0.0f, finite = a < infinity;
+  const F of_infinity = select(a == a, select(grows, F(infinity), F(0.0f)), F(not_a_number));
+  const F magnitude =
+      select(finite, select(a == 0.0f, select(grows, F(0.0f), F(infinity)), computed), of_infinity);
 
   // The sign of a negative base: odd powers keep it, other whole powers lose it, and there are no
   // others.
-  const BoolOf<F> whole = trunc(y) == y;
-  const BoolOf<F> odd = both(both(whole, abs(y) < 16777216.0f), (to_int(y) & I(1)) == I(1));
-  const BoolOf<F> negative = bits(x) < I(0);
-  const F signed_magnitude = select(both(odd, negative), -magnitude, magnitude);
-  const BoolOf<F> undefined =
-      both(both(x < 0.0f, negate(whole)), both(abs(x) < infinity, abs(y) < infinity));
-  const F defined =
-      select(either(undefined, either(x != x, y != y)), F(not_a_number), signed_magnitude);
+  const F half = 0.5f * y;
+  const BoolOf<F> whole = trunc(y) == y, odd = both(whole, trunc(half) != half);
+  const I sign = select(odd, bits(x) & I(word(0x80000000u)), I(0));
+  const F with_sign = from_bits(bits(magnitude) ^ sign);
+  const BoolOf<F> undefined = both(both(x < 0.0f, finite), negate(whole));
+  const F defined = select(either(undefined, y != y), F(not_a_number), with_sign);
   return select(either(y == 0.0f, x == 1.0f), F(1.0f), select(y == 1.0f, x, defined));
 }
 

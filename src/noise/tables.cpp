@@ -84,6 +84,15 @@ constexpr std::array<std::int32_t, 256> two_over_pi_windows = [] {
   return windows;
 }();
 
+constexpr std::array<float, 8> factors = {1.375f, 1.25f,    1.125f,  1.0625f,
+                                          1.0f,   0.90625f, 0.8125f, 0.75f};
+constexpr std::array<float, 8> factor_logs = {
+    -0.4594268798828125f, -0.321929931640625f, -0.169921875f, -0.08746337890625f, 0.0f,
+    0.1420135498046875f,  0.299560546875f,     0.4150390625f};
+constexpr std::array<float, 8> factor_log_rests = {
+    -4.73875434e-06f, 1.836753313e-06f, -3.12644238e-06f, 5.376559215e-07f, 0.0f,
+    5.455067821e-06f, -2.65016098e-07f, -1.56322119e-06f};
+
 constexpr std::array one = {FloatTable{"slope.1", slopes}};
 constexpr std::array two = {FloatTable{"x.2", x2}, FloatTable{"y.2", y2}};
 constexpr std::array three = {FloatTable{"x.3", x3}, FloatTable{"y.3", y3}, FloatTable{"z.3", z3}};
@@ -95,6 +104,10 @@ constexpr std::array four = {FloatTable{"x.4", x4}, FloatTable{"y.4", y4}, Float
 constinit const ByteTable permutation = {"permutation", permutation_entries};
 
 constinit const IntTable two_over_pi = {"two_over_pi", two_over_pi_windows};
+
+constinit const FloatTable octave_factor = {"octave.factor", factors};
+constinit const FloatTable octave_log2 = {"octave.log2", factor_logs};
+constinit const FloatTable octave_log2_rest = {"octave.log2.rest", factor_log_rests};
 
 std::span<const FloatTable> gradient_tables(std::size_t dimensions) {
   constexpr std::array<std::span<const FloatTable>, 4> tables = {one, two, three, four};

@@ -31,4 +31,8 @@ std::span<const FloatTable> book_gradients();
 inline constexpr int two_over_pi_lead = 32;
 extern const IntTable two_over_pi;
 
+// For logarithms of m in [0.708, 1.416], by eighths of that octave: a factor c of few bits that
+// brings m near 1, and -log2(c) in two parts, the first a multiple of 2^-16.
+extern const FloatTable octave_factor, octave_log2, octave_log2_rest;
+
 }  // namespace pse::num

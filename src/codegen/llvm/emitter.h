@@ -1,11 +1,14 @@
 // IR -> LLVM IR, once, for every vector width. A ModuleEmitter owns what a kernel shares (tables,
 // called functions); a FunctionEmitter writes one function. A value that is the same for all
 // samples of a vector is a scalar, any other is a vector of `width` lanes; at width 1 everything is
-// a scalar. Split over files by what is emitted: module_, value_, control_, table_, array_ and
-// effect_emitter.cpp.
+// a scalar. Split over files by what is emitted: module_, value_, control_, table_, byte_, array_
+// and effect_emitter.cpp.
 #pragma once
 
+#include <array>
 #include <map>
+#include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -14,6 +17,7 @@
 
 #include "codegen/array_layout.h"
 #include "codegen/backend.h"
+#include "codegen/llvm/asked_bits.h"
 #include "codegen/llvm/uniformity.h"
 #include "codegen/llvm/vector_tools.h"
 
@@ -34,6 +38,8 @@ class ModuleEmitter {
   llvm::Type* type_of(ir::Type type, unsigned lanes);
   // A read-only global with these contents; equal contents are one global.
   llvm::Value* constant_data(llvm::Constant* contents);
+  // How many of `count` bytes one instruction of this target takes.
+  unsigned byte_piece(unsigned count) const;
   // The function `index` of the IR for vectors of `lanes`, where these parameters vary. Its LLVM
   // parameters are the KernelCall, the mask of active lanes (if it takes one), and the operands.
   llvm::Function* called_function(std::uint32_t index, const std::vector<bool>& varying,
@@ -82,6 +88,7 @@ class FunctionEmitter {
   llvm::Value* emit_value(const ir::Instruction& in);
   llvm::Value* emit_input(const ir::Instruction& in);
   llvm::Value* divide(llvm::Value* dividend, llvm::Value* divisor);
+  llvm::Value* multiply(llvm::Value* a, llvm::Value* b);
   llvm::Value* float_to_int(llvm::Value* value);
   llvm::Value* shift(ir::Op op, llvm::Value* value, llvm::Value* by);
   llvm::Value* canonical_nan(llvm::Value* value);
@@ -95,15 +102,27 @@ class FunctionEmitter {
   // table_emitter.cpp
   llvm::Value* table_lookup(llvm::ArrayRef<llvm::Constant*> entries, llvm::Value* index);
   llvm::Value* table_in_registers(llvm::ArrayRef<llvm::Constant*> entries, llvm::Value* index);
-  llvm::Value* table_in_bytes(llvm::ArrayRef<llvm::Constant*> entries, llvm::Value* index);
+  std::optional<std::array<std::uint8_t, 32>> top_bytes(llvm::ArrayRef<llvm::Constant*> entries);
+  llvm::Value* table_in_bytes(const std::array<std::uint8_t, 32>& bytes, bool two_rows,
+                              llvm::Value* index);
+  llvm::Value* multiply_add(const ir::Instruction& in, bool wide);
   llvm::Value* permute_512(llvm::Constant* table, llvm::Value* index);
   llvm::Value* permute_256(llvm::Constant* table, llvm::Value* index);
-  llvm::Value* multiply(llvm::Value* a, llvm::Value* b);
+
+  // byte_emitter.cpp
   llvm::Value* bytes_add(llvm::Value* a, llvm::Value* b);
-  llvm::Value* bytes_lookup(const ir::ByteTable& table, llvm::Value* index);
+  llvm::Value* shuffle_bytes(llvm::ArrayRef<std::uint8_t> row, llvm::Value* bytes);
+  llvm::Value* choose_bytes(llvm::Value* mask, llvm::Value* yes, llvm::Value* no);
+  llvm::Value* bit_on_top(llvm::Value* bytes, unsigned bit);
+  llvm::Value* choose_row(llvm::ArrayRef<std::uint8_t> rows, std::size_t first, std::size_t count,
+                          llvm::Value* low, llvm::ArrayRef<llvm::Value*> on_top);
+  llvm::Value* bytes_lookup(const ir::ByteTable& table, llvm::Value* index, bool low_half);
+  llvm::Value* spread_byte_lookup(const ir::ByteTable& table, llvm::Value* byte,
+                                  std::uint32_t added);
   llvm::Value* bytes_lookup_vbmi(const ir::ByteTable& table, llvm::Value* bytes);
-  llvm::Value* bytes_lookup_shuffles(const ir::ByteTable& table, llvm::Value* bytes,
-                                     unsigned piece);
+  llvm::Value* bytes_lookup_blends(const ir::ByteTable& table, llvm::Value* bytes);
+  llvm::Value* low_half_lookup(const ir::ByteTable& table, llvm::Value* bytes);
+  llvm::Value* bytes_lookup_shuffles(const ir::ByteTable& table, llvm::Value* bytes);
   llvm::Value* bytes_lookup_scalar(const ir::ByteTable& table, llvm::Value* index);
 
   // control_emitter.cpp
@@ -166,6 +185,16 @@ class FunctionEmitter {
       nullptr;  // index of the first sample of this vector; null outside a sample loop
   llvm::Value* mask_ = nullptr;       // active lanes; null: all
   std::vector<llvm::Value*> values_;  // per ir::Value
+  std::vector<std::uint32_t> asked_;  // per ir::Value: the bits that somebody looks at
+  // What the lookups of one block share: bytes found for whole words, entries known as twice a
+  // half, factors already doubled.
+  std::map<std::tuple<llvm::BasicBlock*, llvm::Value*, std::array<std::uint8_t, 32>>, llvm::Value*>
+      found_bytes_;
+  std::map<llvm::Value*, llvm::Value*> halves_;
+  std::map<std::pair<llvm::BasicBlock*, llvm::Value*>, llvm::Value*> doubled_;
+  // Words that hold one byte four times, and the byte; the same with a constant added.
+  std::map<llvm::Value*, llvm::Value*> repeated_bytes_;
+  std::map<llvm::Value*, std::pair<llvm::Value*, std::uint32_t>> spread_bytes_;
   std::vector<llvm::Value*>
       inputs_;  // per Module::inputs: the value if uniform, the array if of rate sample
   std::vector<bool> input_used_;

@@ -32,6 +32,11 @@ llvm::Type* ModuleEmitter::type_of(ir::Type type, unsigned lanes) {
   return lanes_type(element, lanes);
 }
 
+unsigned ModuleEmitter::byte_piece(unsigned count) const {
+  if (target_.vbmi || (target_.avx512 && count >= 64)) return 64;
+  return target_.avx2 && count >= 32 ? 32 : 16;
+}
+
 llvm::Value* ModuleEmitter::constant_data(llvm::Constant* contents) {
   llvm::Value*& data = data_[contents];
   if (!data) {
@@ -149,6 +154,7 @@ FunctionEmitter::FunctionEmitter(ModuleEmitter& parent, const ir::Function& func
       i1_(b_.getInt1Ty()),
       ptr_(b_.getPtrTy()),
       values_(function.values.size()),
+      asked_(find_asked_bits(ir_, function)),
       inputs_(ir_.inputs.size()),
       input_used_(ir_.inputs.size()),
       sample_layout_(function.arrays, static_cast<int>(lanes)),

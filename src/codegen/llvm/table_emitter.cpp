@@ -4,8 +4,10 @@
 #include "codegen/llvm/emitter.h"
 
 #include <bit>
+#include <utility>
 
 #include <llvm/IR/IntrinsicsX86.h>
+#include <llvm/IR/PatternMatch.h>
 
 namespace pse {
 namespace {
@@ -19,8 +21,15 @@ llvm::Constant* repeated(llvm::ArrayRef<llvm::Constant*> entries, std::size_t fi
   return llvm::ConstantVector::get(all);
 }
 
-llvm::Constant* byte_vector(llvm::LLVMContext& context, llvm::ArrayRef<std::uint8_t> bytes) {
-  return llvm::ConstantDataVector::get(context, bytes);
+// Whether a value is below 2^127, so that it can be doubled: a place in a cell, from its low or its
+// high corner.
+bool is_place_in_cell(llvm::Value* value) {
+  using namespace llvm::PatternMatch;
+  llvm::Value* from_low = nullptr;
+  if (match(value, m_FSub(m_Value(from_low), m_SpecificFP(1.0)))) value = from_low;
+  llvm::Value* point = nullptr;
+  return match(value,
+               m_FSub(m_Value(point), m_Intrinsic<llvm::Intrinsic::floor>(m_Deferred(point))));
 }
 
 }  // namespace
@@ -36,8 +45,9 @@ llvm::Value* FunctionEmitter::table_lookup(llvm::ArrayRef<llvm::Constant*> entri
   const unsigned lanes = lanes_of(index);
   if (lanes > 1 && parent_.target().avx512 && entries.size() <= 32)
     return table_in_registers(entries, index);
-  if (lanes > 1 && !parent_.target().avx512 && entries.size() <= 16) {
-    if (llvm::Value* result = table_in_bytes(entries, index)) return result;
+  if (lanes > 1 && !parent_.target().avx512) {
+    if (const auto bytes = top_bytes(entries))
+      return table_in_bytes(*bytes, entries.size() > 16, index);
   }
   if (lanes > 1 && parent_.target().avx2 && entries.size() <= 16)
     return table_in_registers(entries, index);
@@ -82,13 +92,12 @@ llvm::Value* FunctionEmitter::table_in_registers(llvm::ArrayRef<llvm::Constant*>
   return b_.CreateBitCast(result, lanes_type(entries[0]->getType(), lanes_of(index)));
 }
 
-// A table of halves, ones and zeros, such as gradients are: half of each entry has only its top
-// byte set, so one shuffle looks up bytes. Where several lookups take their indices from the bytes
-// of one word, they share that shuffle.
-llvm::Value* FunctionEmitter::table_in_bytes(llvm::ArrayRef<llvm::Constant*> entries,
-                                             llvm::Value* index) {
-  if (!entries[0]->getType()->isFloatTy()) return nullptr;
-  llvm::SmallVector<std::uint8_t, 32> halves;
+// The top bytes of the halves of a table's entries, where a half has nothing else: gradients are
+// such tables. Repeated to fill two rows of 16.
+std::optional<std::array<std::uint8_t, 32>> FunctionEmitter::top_bytes(
+    llvm::ArrayRef<llvm::Constant*> entries) {
+  if (!entries[0]->getType()->isFloatTy() || entries.size() > 32) return std::nullopt;
+  std::array<std::uint8_t, 32> bytes{};
   for (unsigned i = 0; i < 32; ++i) {
     const float entry =
         llvm::cast<llvm::ConstantFP>(entries[i % entries.size()])->getValueAPF().convertToFloat();
@@ -96,9 +105,17 @@ llvm::Value* FunctionEmitter::table_in_bytes(llvm::ArrayRef<llvm::Constant*> ent
     const auto half_bits = std::bit_cast<std::uint32_t>(half);
     if (std::bit_cast<std::uint32_t>(half + half) != std::bit_cast<std::uint32_t>(entry) ||
         half_bits << 8 != 0)
-      return nullptr;
-    halves.push_back(static_cast<std::uint8_t>(half_bits >> 24));
+      return std::nullopt;
+    bytes[i] = static_cast<std::uint8_t>(half_bits >> 24);
   }
+  return bytes;
+}
+
+// One shuffle looks up such bytes for all four bytes of a word of indices, so that lookups whose
+// indices are the bytes of one word share it. The result is remembered to be twice a half: products
+// use that (times_table).
+llvm::Value* FunctionEmitter::table_in_bytes(const std::array<std::uint8_t, 32>& bytes,
+                                             bool two_rows, llvm::Value* index) {
   // Which byte of which word the index is.
   llvm::Value* word = index;
   std::uint64_t byte = 0;
@@ -115,21 +132,56 @@ llvm::Value* FunctionEmitter::table_in_bytes(llvm::ArrayRef<llvm::Constant*> ent
 
   llvm::Type* words = index->getType();
   const auto constant = [&](std::uint32_t value) { return llvm::ConstantInt::get(words, value); };
-  llvm::Value* low_bits = b_.CreateAnd(word, constant(0x0f0f0f0fu));
-  llvm::Type* all_bytes = lanes_type(b_.getInt8Ty(), 4 * lanes_of(index));
-  const unsigned piece = parent_.target().avx2 && lanes_of(index) >= 8 ? 32 : 16;
-  const auto shuffle_id =
-      piece == 32 ? llvm::Intrinsic::x86_avx2_pshuf_b : llvm::Intrinsic::x86_ssse3_pshuf_b_128;
-  llvm::Constant* row = byte_vector(context_, llvm::ArrayRef(halves).take_front(piece));
-  llvm::Value* found =
-      by_pieces(b_, b_.CreateBitCast(low_bits, all_bytes), piece, [&](llvm::Value* v) {
-        return b_.CreateIntrinsic(shuffle_id, {}, {row, v});
-      });
+  llvm::Value*& found = found_bytes_[{b_.GetInsertBlock(), word, bytes}];
+  if (!found) {
+    llvm::Type* all_bytes = lanes_type(b_.getInt8Ty(), 4 * lanes_of(index));
+    llvm::Value* low = b_.CreateBitCast(b_.CreateAnd(word, constant(0x0f0f0f0fu)), all_bytes);
+    const auto row = [&](std::size_t first) {
+      return shuffle_bytes(llvm::ArrayRef(bytes).slice(first, 16), low);
+    };
+    found = row(0);
+    if (two_rows) {
+      llvm::Value* bit4_on_top = b_.CreateBitCast(b_.CreateShl(word, constant(3)), all_bytes);
+      found = choose_bytes(bit4_on_top, row(16), found);
+    }
+  }
   llvm::Value* top = b_.CreateBitCast(found, words);
   if (byte < 3) top = b_.CreateShl(top, constant(static_cast<std::uint32_t>(24 - 8 * byte)));
   if (byte > 0) top = b_.CreateAnd(top, constant(0xff000000u));
   llvm::Value* half = b_.CreateBitCast(top, lanes_type(f32_, lanes_of(index)));
-  return b_.CreateFAdd(half, half);
+  llvm::Value* entry = b_.CreateFAdd(half, half);
+  halves_[entry] = half;
+  return entry;
+}
+
+// fadd, fmul and fma. Where a factor is an entry that was looked up as its half, that half times
+// twice the other factor is the same number, and twice a place in a cell serves all its corners; an
+// entry is twice its half by a product that costs nothing beside the sum.
+llvm::Value* FunctionEmitter::multiply_add(const ir::Instruction& in, bool wide) {
+  const auto arg = [&](std::size_t i) { return get_as(in.operands[i], wide); };
+  llvm::Value *a = arg(0), *b = arg(1), *c = in.op == ir::Op::fma ? arg(2) : nullptr;
+  const auto half_of = [&](llvm::Value* entry) -> llvm::Value* {
+    const auto found = halves_.find(entry);
+    return found == halves_.end() ? nullptr : found->second;
+  };
+  for (std::size_t i = 0; i < 2; ++i) {
+    llvm::Value *half = half_of(i == 0 ? a : b), *other = i == 0 ? b : a;
+    if (!half) continue;
+    if (in.op == ir::Op::fadd) {
+      c = other;
+      b = llvm::ConstantFP::get(half->getType(), 2.0);
+    } else if (is_place_in_cell(get(in.operands[1 - i]))) {
+      llvm::Value*& twice = doubled_[{b_.GetInsertBlock(), other}];
+      if (!twice) twice = b_.CreateFAdd(other, other);
+      b = twice;
+    } else {
+      continue;
+    }
+    a = half;
+    break;
+  }
+  if (c) return b_.CreateIntrinsic(llvm::Intrinsic::fma, {a->getType()}, {a, b, c});
+  return in.op == ir::Op::fadd ? b_.CreateFAdd(a, b) : b_.CreateFMul(a, b);
 }
 
 llvm::Value* FunctionEmitter::permute_512(llvm::Constant* table, llvm::Value* index) {
@@ -138,91 +190,6 @@ llvm::Value* FunctionEmitter::permute_512(llvm::Constant* table, llvm::Value* in
 
 llvm::Value* FunctionEmitter::permute_256(llvm::Constant* table, llvm::Value* index) {
   return b_.CreateIntrinsic(llvm::Intrinsic::x86_avx2_permps, {}, {table, index});
-}
-
-llvm::Value* FunctionEmitter::bytes_add(llvm::Value* x, llvm::Value* y) {
-  llvm::Type* bytes = lanes_type(b_.getInt8Ty(), 4 * lanes_of(x));
-  return b_.CreateBitCast(b_.CreateAdd(b_.CreateBitCast(x, bytes), b_.CreateBitCast(y, bytes)),
-                          x->getType());
-}
-
-llvm::Value* FunctionEmitter::bytes_lookup(const ir::ByteTable& table, llvm::Value* index) {
-  if (lanes_of(index) == 1) return bytes_lookup_scalar(table, index);
-  llvm::Value* bytes = b_.CreateBitCast(index, lanes_type(b_.getInt8Ty(), 4 * lanes_of(index)));
-  llvm::Value* result;
-  if (parent_.target().vbmi) {
-    result = by_pieces(b_, bytes, 64, [&](llvm::Value* v) { return bytes_lookup_vbmi(table, v); });
-  } else {
-    const unsigned piece = parent_.target().avx512 && lanes_of(bytes) >= 64 ? 64
-                           : parent_.target().avx2 && lanes_of(bytes) >= 32 ? 32
-                                                                            : 16;
-    result = by_pieces(b_, bytes, piece,
-                       [&](llvm::Value* v) { return bytes_lookup_shuffles(table, v, piece); });
-  }
-  return b_.CreateBitCast(result, index->getType());
-}
-
-// The table in four registers: two lookups in 128 entries each, and the top bit chooses.
-llvm::Value* FunctionEmitter::bytes_lookup_vbmi(const ir::ByteTable& table, llvm::Value* bytes) {
-  const auto part = [&](std::size_t i) {
-    return byte_vector(context_, llvm::ArrayRef(table.entries).slice(64 * i, 64));
-  };
-  const auto lookup = [&](std::size_t i) {
-    return b_.CreateIntrinsic(llvm::Intrinsic::x86_avx512_vpermi2var_qi_512, {},
-                              {part(i), bytes, part(i + 1)});
-  };
-  llvm::Value *low = lookup(0), *high = lookup(2);
-  return b_.CreateSelect(b_.CreateICmpSLT(bytes, llvm::Constant::getNullValue(bytes->getType())),
-                         high, low);
-}
-
-// Sixteen shuffles of 16 entries. A shuffle gives 0 where the index is negative, so with the index
-// lowered by 16 at each step the steps 0..k all answer an index of row k; tables that hold the
-// difference to the row before (by exclusive or) make the sum of these answers the entry.
-// Saturation keeps negative indices negative, so that each half of the table answers only for its
-// own half of the indices.
-llvm::Value* FunctionEmitter::bytes_lookup_shuffles(const ir::ByteTable& table, llvm::Value* bytes,
-                                                    unsigned piece) {
-  const auto shuffle_id = piece == 64   ? llvm::Intrinsic::x86_avx512_pshuf_b_512
-                          : piece == 32 ? llvm::Intrinsic::x86_avx2_pshuf_b
-                                        : llvm::Intrinsic::x86_ssse3_pshuf_b_128;
-  const auto splat_byte = [&](unsigned value) {
-    return llvm::ConstantInt::get(bytes->getType(), value);
-  };
-  llvm::Value* result = nullptr;
-  for (unsigned half = 0; half < 2; ++half) {
-    llvm::Value* index = half == 0 ? bytes : b_.CreateXor(bytes, splat_byte(0x80));
-    for (unsigned row = 0; row < 8; ++row) {
-      llvm::SmallVector<std::uint8_t, 64> difference;
-      for (unsigned i = 0; i < piece; ++i) {
-        const unsigned entry = 128 * half + 16 * row + i % 16;
-        const unsigned before = row == 0 ? 0u : table.entries[entry - 16];
-        difference.push_back(static_cast<std::uint8_t>(table.entries[entry] ^ before));
-      }
-      llvm::Value* lowered = row == 0 ? index
-                                      : b_.CreateBinaryIntrinsic(llvm::Intrinsic::ssub_sat, index,
-                                                                 splat_byte(16 * row));
-      llvm::Value* answer =
-          b_.CreateIntrinsic(shuffle_id, {}, {byte_vector(context_, difference), lowered});
-      result = result ? b_.CreateXor(result, answer) : answer;
-    }
-  }
-  return result;
-}
-
-llvm::Value* FunctionEmitter::bytes_lookup_scalar(const ir::ByteTable& table, llvm::Value* index) {
-  llvm::Value* data =
-      parent_.constant_data(llvm::ConstantDataArray::get(context_, llvm::ArrayRef(table.entries)));
-  llvm::Value* result = nullptr;
-  for (std::uint32_t shift = 0; shift < 32; shift += 8) {
-    llvm::Value* byte = b_.CreateAnd(b_.CreateLShr(index, shift), b_.getInt32(255));
-    auto* load = b_.CreateLoad(
-        b_.getInt8Ty(), b_.CreateInBoundsGEP(b_.getInt8Ty(), data, b_.CreateZExt(byte, i64_)));
-    load->setMetadata(llvm::LLVMContext::MD_invariant_load, llvm::MDNode::get(context_, {}));
-    llvm::Value* placed = b_.CreateShl(b_.CreateZExt(load, i32_), shift);
-    result = result ? b_.CreateOr(result, placed) : placed;
-  }
-  return result;
 }
 
 }  // namespace pse

@@ -65,7 +65,9 @@ llvm::Value* FunctionEmitter::multiply(llvm::Value* x, llvm::Value* y) {
   llvm::SmallVector<int, 128> low_bytes;
   for (unsigned i = 0; i < 4 * lanes; ++i) low_bytes.push_back(static_cast<int>(i & ~3u));
   llvm::Value* bytes = b_.CreateBitCast(source, lanes_type(b_.getInt8Ty(), 4 * lanes));
-  return b_.CreateBitCast(b_.CreateShuffleVector(bytes, low_bytes), x->getType());
+  llvm::Value* word = b_.CreateBitCast(b_.CreateShuffleVector(bytes, low_bytes), x->getType());
+  repeated_bytes_[word] = source;
+  return word;
 }
 
 // cvttps2dq gives -2^31 where the value does not fit; LLVM's own fptosi would be undefined there.
@@ -146,18 +148,14 @@ llvm::Value* FunctionEmitter::emit_value(const ir::Instruction& in) {
       return b_.getInt1(in.imm != 0);
     case Op::input:
       return emit_input(in);
-    case Op::fadd:
-      return b_.CreateFAdd(arg(0), arg(1));
     case Op::fsub:
       return b_.CreateFSub(arg(0), arg(1));
-    case Op::fmul:
-      return b_.CreateFMul(arg(0), arg(1));
     case Op::fdiv:
       return divide(arg(0), arg(1));
-    case Op::fma: {
-      llvm::Value* a = arg(0);
-      return b_.CreateIntrinsic(llvm::Intrinsic::fma, {a->getType()}, {a, arg(1), arg(2)});
-    }
+    case Op::fadd:
+    case Op::fmul:
+    case Op::fma:
+      return multiply_add(in, wide);
     case Op::fneg:
       return b_.CreateFNeg(arg(0));
     case Op::fabs:
@@ -244,7 +242,7 @@ llvm::Value* FunctionEmitter::emit_value(const ir::Instruction& in) {
     case Op::bytes_add:
       return bytes_add(arg(0), arg(1));
     case Op::bytes_lookup:
-      return bytes_lookup(ir_.byte_tables[index], arg(0));
+      return bytes_lookup(ir_.byte_tables[index], arg(0), (asked_[in.result()] & 0xf0f0f0f0u) == 0);
     case Op::array_load:
       return emit_array_load(in);
     case Op::array_length:

@@ -24,7 +24,7 @@ bool looks_along_up(const Camera& camera) {
   return !(dot(side, side) > 1e-12 * dot(way, way) * dot(camera.up, camera.up));
 }
 
-// What is upward in the picture; straight up or down the view along Y, so that X stays to the right.
+// What is upward in the picture; where the view is along Y, Z, so that X stays to the right.
 Vec3 upward(const Camera& camera) {
   if (!looks_along_up(camera)) return camera.up;
   return {0, 0, camera.target.y > camera.eye.y ? 1.0 : -1.0};

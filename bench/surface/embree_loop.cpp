@@ -8,15 +8,36 @@
 namespace pse::surface {
 namespace {
 
-void set(RTCRay16& rays, int k, const Ray& ray) {
-  rays.org_x[k] = static_cast<float>(ray.origin.x);
-  rays.org_y[k] = static_cast<float>(ray.origin.y);
-  rays.org_z[k] = static_cast<float>(ray.origin.z);
-  rays.dir_x[k] = static_cast<float>(ray.direction.x);
-  rays.dir_y[k] = static_cast<float>(ray.direction.y);
-  rays.dir_z[k] = static_cast<float>(ray.direction.z);
-  rays.tnear[k] = 0, rays.tfar[k] = 1e30f, rays.time[k] = 0;
-  rays.mask[k] = 0xffffffff, rays.flags[k] = 0;
+RTCRay ray_of(const Ray& ray) {
+  return {static_cast<float>(ray.origin.x), static_cast<float>(ray.origin.y),
+          static_cast<float>(ray.origin.z), 0,
+          static_cast<float>(ray.direction.x), static_cast<float>(ray.direction.y),
+          static_cast<float>(ray.direction.z), 0, 1e30f, 0xffffffff, 0, 0};
+}
+
+// One block of pixels, in a packet of as many lanes.
+template <class Packet, int lanes, class Intersect>
+void block(const Lens& lens, int x, int y, int size, const Intersect& intersect,
+           std::vector<std::uint32_t>& found) {
+  alignas(64) int all[lanes];
+  alignas(64) Packet query;
+  for (int k = 0; k < lanes; ++k) {
+    const RTCRay ray = ray_of(lens.ray(x + k % 4 + 0.5, y + k / 4 + 0.5));
+    auto& r = query.ray;
+    r.org_x[k] = ray.org_x, r.org_y[k] = ray.org_y, r.org_z[k] = ray.org_z;
+    r.dir_x[k] = ray.dir_x, r.dir_y[k] = ray.dir_y, r.dir_z[k] = ray.dir_z;
+    r.tnear[k] = 0, r.tfar[k] = ray.tfar, r.time[k] = 0;
+    r.mask[k] = ray.mask, r.id[k] = 0, r.flags[k] = 0;
+    query.hit.geomID[k] = query.hit.primID[k] = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    all[k] = -1;
+  }
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  intersect(all, &context, &query);
+  for (int k = 0; k < lanes; ++k)
+    found[static_cast<std::size_t>(y + k / 4) * size + x + k % 4] = query.hit.primID[k];
 }
 
 }  // namespace
@@ -44,36 +65,30 @@ EmbreeLoop::~EmbreeLoop() {
   rtcReleaseDevice(static_cast<RTCDevice>(device_));
 }
 
-std::vector<std::uint32_t> EmbreeLoop::triangles(const Lens& lens, int size, bool packets) const {
+std::vector<std::uint32_t> EmbreeLoop::triangles(const Lens& lens, int size, int packet) const {
   std::vector<std::uint32_t> found(static_cast<std::size_t>(size) * size);
   const auto scene = static_cast<RTCScene>(scene_);
-  alignas(64) int all[16];
-  std::fill_n(all, 16, -1);
-  for (int y = 0; y < size; y += 4)
-    for (int x = 0; x < size; x += 4) {
-      RTCIntersectContext context;
-      rtcInitIntersectContext(&context);
-      context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-      alignas(64) RTCRayHit16 query;
-      for (int k = 0; k < 16; ++k) {
-        set(query.ray, k, lens.ray(x + k % 4 + 0.5, y + k / 4 + 0.5));
-        query.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-        query.hit.primID[k] = RTC_INVALID_GEOMETRY_ID;
-      }
-      if (packets) {
-        rtcIntersect16(all, scene, &context, &query);
-      } else {
-        for (unsigned k = 0; k < 16; ++k) {
-          RTCRayHit single;
-          single.ray = rtcGetRayFromRayN(reinterpret_cast<RTCRayN*>(&query.ray), 16, k);
-          single.hit.geomID = single.hit.primID = RTC_INVALID_GEOMETRY_ID;
-          single.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-          rtcIntersect1(scene, &context, &single);
-          query.hit.primID[k] = single.hit.primID;
-        }
-      }
-      for (int k = 0; k < 16; ++k)
-        found[static_cast<std::size_t>(y + k / 4) * size + x + k % 4] = query.hit.primID[k];
+  const auto alone = [&](int x, int y) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit query;
+    query.ray = ray_of(lens.ray(x + 0.5, y + 0.5));
+    query.hit.geomID = query.hit.primID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene, &context, &query);
+    found[static_cast<std::size_t>(y) * size + x] = query.hit.primID;
+  };
+  for (int y = 0; y < size; y += packet == 1 ? 1 : packet / 4)
+    for (int x = 0; x < size; x += packet == 1 ? 1 : 4) {
+      if (packet == 1)
+        alone(x, y);
+      else if (packet == 8)
+        block<RTCRayHit8, 8>(lens, x, y, size, [&](int* valid, auto* context, auto* query) {
+          rtcIntersect8(valid, scene, context, query);
+        }, found);
+      else
+        block<RTCRayHit16, 16>(lens, x, y, size, [&](int* valid, auto* context, auto* query) {
+          rtcIntersect16(valid, scene, context, query);
+        }, found);
     }
   return found;
 }

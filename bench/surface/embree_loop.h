@@ -13,9 +13,9 @@ class EmbreeLoop {
   EmbreeLoop(const EmbreeLoop&) = delete;
   EmbreeLoop& operator=(const EmbreeLoop&) = delete;
 
-  // The triangle at each pixel of a square picture, or 0xffffffff; single rays or packets of 16 in
-  // blocks of 4 by 4.
-  std::vector<std::uint32_t> triangles(const Lens& lens, int size, bool packets) const;
+  // The triangle at each pixel of a square picture, or 0xffffffff; rays alone or in packets of 8 or
+  // 16, blocks of 4 by 2 or 4 pixels.
+  std::vector<std::uint32_t> triangles(const Lens& lens, int size, int packet) const;
 
  private:
   void* device_;

@@ -98,9 +98,7 @@ void check_view(const SceneCamera& c, const auto& fail) {
   if (!c.has_eye) return;
   const Vec3 way = camera.target - camera.eye;
   if (!(dot(way, way) > 0)) fail("the camera's eye is at its target");
-  const Vec3 side = cross(way, camera.up);
-  if (!(dot(side, side) > 1e-12 * dot(way, way) * dot(camera.up, camera.up)))
-    fail("the camera looks along its `up`");
+  if (!camera.has_upright()) fail("the camera looks along its `up`");
 }
 
 SceneCamera read_camera(Reader reader) {

@@ -10,6 +10,12 @@
 
 namespace pse {
 
+// Calls a host's function for those of up to 64 lanes whose bit is set in `active`, and for no
+// others: their results become 0. `lanes`: how many there are.
+void call_active(void (*call)(void*, std::int64_t, const float* const*, float* const*), void* user,
+                 std::uint64_t active, std::int64_t lanes, std::int64_t arguments,
+                 const float* const* argument, std::int64_t results, float* const* result);
+
 struct KernelCall {
   const float* const* inputs =
       nullptr;  // one array per Module::inputs entry, null unless of rate sample
@@ -23,6 +29,7 @@ struct KernelCall {
   float* scratch = nullptr;  // sample-rate arrays, laid out by SampleArrayLayout; 64-byte aligned
   const std::atomic<bool>* cancel = nullptr;
   const ExternalFunction* externals = nullptr;
+  decltype(&pse::call_active) call_active = &pse::call_active;
   // Out: where a check failed, or -1. Written before the code returns early.
   std::int32_t failed_check = -1;
   std::int64_t failed_sample = 0;

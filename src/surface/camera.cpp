@@ -17,24 +17,34 @@ Camera framing(const Box& box, double aspect, double fov) {
   return camera;
 }
 
+namespace {
+
+bool looks_along_up(const Camera& camera) {
+  const Vec3 way = camera.target - camera.eye, side = cross(way, camera.up);
+  return !(dot(side, side) > 1e-12 * dot(way, way) * dot(camera.up, camera.up));
+}
+
+// What is upward in the picture; where the view is along Y, Z, so that X stays to the right.
+Vec3 upward(const Camera& camera) {
+  if (!looks_along_up(camera)) return camera.up;
+  return {0, 0, camera.target.y > camera.eye.y ? 1.0 : -1.0};
+}
+
+}  // namespace
+
+bool Camera::has_upright() const { return up == Vec3{0, 1, 0} || !looks_along_up(*this); }
+
 Lens::Lens(const Camera& camera, int width, int height)
     : eye_(camera.eye),
       forward_(normalized(camera.target - camera.eye)),
-      right_(normalized(cross(forward_, camera.up))),
+      right_(normalized(cross(forward_, upward(camera)))),
       up_(cross(right_, forward_)),
       width_(width),
       height_(height),
       scale_(camera.height > 0 ? camera.height / 2
                                : std::tan(camera.fov * std::numbers::pi / 360)),
+      step_(scale_ / height),
       pixel_(2 * scale_ / height),
       parallel_(camera.height > 0) {}
-
-Ray Lens::ray(double x, double y) const {
-  const double across = scale_ * (2 * x - width_) / height_,
-               upward = scale_ * (height_ - 2 * y) / height_;
-  const Vec3 offset = across * right_ + upward * up_;
-  if (parallel_) return {eye_ + offset, forward_};
-  return {eye_, normalized(forward_ + offset)};
-}
 
 }  // namespace pse::surface

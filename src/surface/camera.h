@@ -7,6 +7,9 @@ namespace pse::surface {
 
 struct Camera {
   Vec3 eye{0, 0, 5}, target, up{0, 1, 0};
+  // False where the view is along `up`, so that nothing says what is upward. Along Y something does:
+  // X stays to the right.
+  bool has_upright() const;
   double fov = 30;     // degrees from the picture's bottom to its top
   double height = 0;   // orthographic where not 0: metres from bottom to top
 };
@@ -14,13 +17,18 @@ struct Camera {
 // A camera that shows all of a box from the front, a little from above and from the right.
 Camera framing(const Box& box, double aspect, double fov);
 
-// A camera for pictures of one size. `eye` and `target` differ, `up` is not parallel to the view.
+// A camera for pictures of one size. `eye` and `target` differ, it has an upright.
 class Lens {
  public:
   Lens(const Camera& camera, int width, int height);
 
   // Through the place (x, y) in pixels from the top left corner; the direction has length 1.
-  Ray ray(double x, double y) const;
+  Ray ray(double x, double y) const {
+    const double across = step_ * (2 * x - width_), upward = step_ * (height_ - 2 * y);
+    const Vec3 offset = across * right_ + upward * up_;
+    if (parallel_) return {eye_ + offset, forward_};
+    return {eye_, normalized(forward_ + offset)};
+  }
   // How far in front of the eye's plane a point of that ray at distance t lies.
   double depth(const Ray& ray, double t) const {
     return t * dot(ray.direction, forward_) + dot(ray.origin - eye_, forward_);
@@ -38,6 +46,7 @@ class Lens {
   Vec3 eye_, forward_, right_, up_;
   double width_, height_;
   double scale_;  // half the picture's height at distance 1, or in metres
+  double step_;   // half a pixel's height there
   double pixel_;
   bool parallel_;
 };

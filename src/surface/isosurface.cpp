@@ -48,30 +48,35 @@ class Isosurface : public Shape {
       : field_(std::move(field)), level_(level), box_(box), step_(step) {}
   Box bounds() const override { return box_; }
 
-  void intersect(std::span<const Ray> rays, std::span<ShapeHit> hits) const override {
+  void find(std::span<const Ray> rays, std::span<Meeting> meetings) const override {
     std::vector<March> found = march(rays);
     narrow(rays, found);
+    for (const March& m : found)
+      if (m.a > rays[m.ray].begin && m.a < rays[m.ray].end) meetings[m.ray].t = m.a;
+  }
+
+  void describe(std::span<const Ray> rays, std::span<const Meeting> meetings, bool with_uv,
+                std::span<ShapePoint> described) const override {
     Points points;
     const double h = 0.1 * step_;
     constexpr Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    for (const March& m : found) {
-      const Vec3 p = rays[m.ray].origin + m.a * rays[m.ray].direction;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Vec3 p = rays[i].origin + meetings[i].t * rays[i].direction;
       for (const Vec3& axis : axes) points.add(p + h * axis), points.add(p - h * axis);
     }
     points.ask(field_);
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      const Ray& ray = rays[found[i].ray];
-      if (!(found[i].a > ray.begin && found[i].a < ray.end)) continue;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Ray& ray = rays[i];
       Vec3 normal{points[6 * i + 1] - points[6 * i], points[6 * i + 3] - points[6 * i + 2],
                   points[6 * i + 5] - points[6 * i + 4]};
       if (!(dot(normal, normal) > 0)) normal = -ray.direction;
-      ShapeHit& hit = hits[found[i].ray];
-      hit.t = found[i].a;
-      hit.normal = hit.flat = normal;
-      const Vec3 p = ray.origin + hit.t * ray.direction - box_.centre();
-      hit.u = std::atan2(-p.z, p.x) / (2 * pi);
-      if (hit.u < 0) hit.u += 1;
-      hit.v = 0.5 + std::atan2(p.y, std::hypot(p.x, p.z)) / pi;
+      ShapePoint& point = described[i];
+      point.normal = point.flat = normal;
+      if (!with_uv) continue;
+      const Vec3 p = ray.origin + meetings[i].t * ray.direction - box_.centre();
+      point.u = std::atan2(-p.z, p.x) / (2 * pi);
+      if (point.u < 0) point.u += 1;
+      point.v = 0.5 + std::atan2(p.y, std::hypot(p.x, p.z)) / pi;
     }
   }
 

@@ -35,59 +35,59 @@ class MeshShape : public Shape {
       : mesh_(std::move(mesh)), tree_(std::move(tree)), bounds_(mesh_->bounds()) {}
   Box bounds() const override { return bounds_; }
 
-  void intersect(std::span<const Ray> rays, std::span<ShapeHit> hits) const override {
-    constexpr std::size_t many = 64;  // so many rays come from neighbouring pixels
-    std::vector<TriangleHit> found(rays.size());
-    const bool together = rays.size() >= many;
-    if (together)
-      tree_->first_together(rays, found);
-    else
-      tree_->first(rays, found);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (found[i].triangle == TriangleHit::no_triangle) continue;
-      if (fill(rays[i], found[i].triangle, hits[i]) || !together) continue;
-      // Near an edge: the triangle that the ray meets when it is alone.
-      hits[i] = {}, found[i] = {};
-      tree_->first(rays.subspan(i, 1), std::span(&found[i], 1));
+  // A meeting's a and b weigh the second and third corner.
+  void find(std::span<const Ray> rays, std::span<Meeting> meetings) const override {
+    thread_local std::vector<TriangleHit> found;
+    found.assign(rays.size(), {});
+    tree_->first(rays, found);
+    for (std::size_t i = 0; i < rays.size(); ++i)
       if (found[i].triangle != TriangleHit::no_triangle)
-        fill(rays[i], found[i].triangle, hits[i]);
-    }
+        meet(rays[i], found[i].triangle, meetings[i]);
+  }
+
+  void describe(std::span<const Ray> rays, std::span<const Meeting> meetings, bool,
+                std::span<ShapePoint> points) const override {
+    for (std::size_t i = 0; i < rays.size(); ++i) points[i] = look(meetings[i]);
   }
 
  private:
-  // Whether the place lies well within the triangle.
-  bool fill(const Ray& ray, std::uint32_t triangle, ShapeHit& hit) const {
+  void meet(const Ray& ray, std::uint32_t triangle, Meeting& meeting) const {
     const std::uint32_t* corner = &mesh_->triangles[3 * std::size_t{triangle}];
     const Vec3 a = mesh_->position(corner[0]), ab = mesh_->position(corner[1]) - a,
                ac = mesh_->position(corner[2]) - a;
     const Vec3 flat = cross(ab, ac), from = ray.origin - a;
     const double along = dot(flat, ray.direction);
-    if (along == 0) return false;
-    const double t = -dot(flat, from) / along;
-    if (!(t > ray.begin && t < ray.end)) return false;
+    if (along == 0) return;
+    const double per_along = 1 / along, t = -dot(flat, from) * per_along;
+    if (!(t > ray.begin && t < ray.end)) return;
     // Where in the triangle; on its edge where rounding went beyond.
     const Vec3 q = cross(from, ray.direction);
-    double v = -dot(ac, q) / along, w = dot(ab, q) / along;
-    constexpr double edge = 1e-4;
-    const bool within = v > edge && w > edge && 1 - v - w > edge;
+    double v = -dot(ac, q) * per_along, w = dot(ab, q) * per_along;
     v = std::clamp(v, 0.0, 1.0), w = std::clamp(w, 0.0, 1.0);
     if (v + w > 1) v /= v + w, w = 1 - v;
-    const double u = 1 - v - w;
-    hit.t = t;
-    hit.flat = hit.normal = flat;
+    meeting = {t, v, w, triangle};
+  }
+
+  ShapePoint look(const Meeting& meeting) const {
+    const std::uint32_t* corner = &mesh_->triangles[3 * std::size_t{meeting.part}];
+    const double u = 1 - meeting.a - meeting.b;
     const auto mixed = [&](const std::vector<float>& values, std::size_t stride, std::size_t k) {
-      return u * values[stride * corner[0] + k] + v * values[stride * corner[1] + k] +
-             w * values[stride * corner[2] + k];
+      return u * values[stride * corner[0] + k] + meeting.a * values[stride * corner[1] + k] +
+             meeting.b * values[stride * corner[2] + k];
     };
+    const Vec3 a = mesh_->position(corner[0]);
+    ShapePoint point;
+    point.flat = point.normal =
+        cross(mesh_->position(corner[1]) - a, mesh_->position(corner[2]) - a);
     if (!mesh_->normals.empty()) {
       const Vec3 smooth{mixed(mesh_->normals, 3, 0), mixed(mesh_->normals, 3, 1),
                         mixed(mesh_->normals, 3, 2)};
-      if (dot(smooth, smooth) > 1e-12) hit.normal = smooth;
+      if (dot(smooth, smooth) > 1e-12) point.normal = smooth;
       // The side that the normals call outside is the outside.
-      if (dot(hit.normal, flat) < 0) hit.flat = -flat;
+      if (dot(point.normal, point.flat) < 0) point.flat = -point.flat;
     }
-    if (!mesh_->uvs.empty()) hit.u = mixed(mesh_->uvs, 2, 0), hit.v = mixed(mesh_->uvs, 2, 1);
-    return within;
+    if (!mesh_->uvs.empty()) point.u = mixed(mesh_->uvs, 2, 0), point.v = mixed(mesh_->uvs, 2, 1);
+    return point;
   }
 
   std::shared_ptr<const Mesh> mesh_;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <expected>
+#include <string>
 
 #include "surface/shape.h"
 
@@ -57,12 +58,10 @@ struct TriangleHit {
 class TriangleTree {
  public:
   virtual ~TriangleTree() = default;
-  // The triangle that each ray meets first, as far as single precision tells. It depends on the ray
-  // alone.
+  // The triangle that each ray meets first, as far as single precision tells; of several at the same
+  // distance, the one with the least number. It depends on the ray alone. Fastest where eight rays
+  // in a row lie side by side.
   virtual void first(std::span<const Ray> rays, std::span<TriangleHit> hits) const = 0;
-  // The same for rays that lie side by side, several at once; where a ray passes an edge within
-  // rounding, the triangle may be either.
-  virtual void first_together(std::span<const Ray> rays, std::span<TriangleHit> hits) const = 0;
 };
 class MeshTools {
  public:

@@ -83,7 +83,7 @@ struct Slanted {
   double squared(double t) const { return oo + t * (2 * od + t * dd); }
 };
 
-class Revolution : public SingleShape {
+class Revolution : public Shape {
  public:
   Revolution(const std::vector<ProfilePoint>& profile, bool caps) {
     // Ends on the axis go on as their own mirror image, so that they are round.
@@ -122,12 +122,22 @@ class Revolution : public SingleShape {
   }
   Box bounds() const override { return bounds_; }
 
- private:
-  struct Meeting {
-    double t = Box::inf, v = 0;
-    std::size_t piece = 0;
-  };
+  // Rays side by side mostly meet the same piece, so each begins with the one before's; which it
+  // begins with changes nothing of what it meets first.
+  void find(std::span<const Ray> rays, std::span<Meeting> meetings) const override {
+    std::size_t likely = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      meet(rays[i], likely, meetings[i]);
+      if (meetings[i].found()) likely = meetings[i].part;
+    }
+  }
+  void describe(std::span<const Ray> rays, std::span<const Meeting> meetings, bool with_uv,
+                std::span<ShapePoint> points) const override {
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      points[i] = look(rays[i].origin + meetings[i].t * rays[i].direction, meetings[i], with_uv);
+  }
 
+ private:
   void add_disc(const ProfilePoint& from, const ProfilePoint& to, bool front) {
     if (std::max(from.radius, to.radius) < 1e-9) return;
     Piece disc;
@@ -137,35 +147,27 @@ class Revolution : public SingleShape {
     pieces_.insert(front ? pieces_.begin() : pieces_.end(), disc);
   }
 
-  void meet(const Ray& given, ShapeHit& hit) const override {
+  // A meeting's a is the profile's parameter in its piece.
+  void meet(const Ray& given, std::size_t likely, Meeting& meeting) const {
     const Ray ray = beside_axis(given);
     const Span1 span = clip(ray, bounds_);
     if (!(span.begin <= span.end)) return;
     Meeting nearest;
     nearest.t = ray.end;
-    // What may be met, in the order in which the ray may come to it: mostly the first is it.
     const Slanted seen(ray, span);
-    Waiting waiting;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      // Many at once that are not met.
-      if (i % group == 0 && !(earliest(ray, seen, groups_[i / group]) < nearest.t)) {
-        i += group - 1;
-        continue;
-      }
-      const double t = earliest(ray, seen, pieces_[i]);
-      if (!(t < nearest.t)) continue;
-      if (count == waiting.size()) {
-        meet_piece(ray, seen, i, nearest);
-        continue;
-      }
-      std::size_t at = count++;
-      for (; at > 0 && waiting[at - 1].first > t; --at) waiting[at] = waiting[at - 1];
-      waiting[at] = {t, i};
+    if (earliest(ray, seen, pieces_[likely]) < Box::inf) meet_piece(ray, seen, likely, nearest);
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (!may_come_before(earliest(ray, seen, groups_[g]), nearest)) continue;
+      const std::size_t end = std::min(pieces_.size(), (g + 1) * group);
+      for (std::size_t i = g * group; i < end; ++i)
+        if (i != likely && may_come_before(earliest(ray, seen, pieces_[i]), nearest))
+          meet_piece(ray, seen, i, nearest);
     }
-    for (std::size_t k = 0; k < count && waiting[k].first < nearest.t; ++k)
-      meet_piece(ray, seen, waiting[k].second, nearest);
-    if (nearest.t < ray.end) fill(ray, nearest, hit);
+    if (nearest.t < ray.end) meeting = nearest;
+  }
+
+  static bool may_come_before(double earliest, const Meeting& nearest) {
+    return earliest < nearest.t + 1e-9 * std::abs(nearest.t);
   }
 
   // A ray through the axis meets the poles in a double root; one a millionth beside it does not.
@@ -180,8 +182,6 @@ class Revolution : public SingleShape {
       ray.origin.x += 1e-6;
     return ray;
   }
-
-  using Waiting = std::array<std::pair<double, std::size_t>, 32>;
 
   void meet_piece(const Ray& ray, const Slanted& seen, std::size_t index, Meeting& nearest) const {
     if (pieces_[index].heights.begin == pieces_[index].heights.end)
@@ -218,7 +218,9 @@ class Revolution : public SingleShape {
   }
 
   static void keep(const Ray& ray, double t, double v, std::size_t piece, Meeting& nearest) {
-    if (t > ray.begin && t < nearest.t) nearest = {t, v, piece};
+    const auto part = static_cast<std::uint32_t>(piece);
+    if (!(t > ray.begin)) return;
+    if (t < nearest.t || (t == nearest.t && part < nearest.part)) nearest = {t, v, 0, part};
   }
 
   void meet_slanted(const Ray& ray, const Slanted& seen, std::size_t index,
@@ -287,19 +289,18 @@ class Revolution : public SingleShape {
     if (v >= 0 && v <= 1) keep(ray, t, v, index, nearest);
   }
 
-  void fill(const Ray& ray, const Meeting& meeting, ShapeHit& hit) const {
-    const Piece& piece = pieces_[meeting.piece];
-    const Vec3 p = ray.origin + meeting.t * ray.direction;
-    const double r = std::hypot(p.x, p.z), c = r > 0 ? p.x / r : 1, s = r > 0 ? p.z / r : 0;
+  ShapePoint look(const Vec3& p, const Meeting& meeting, bool with_uv) const {
+    const Piece& piece = pieces_[meeting.part];
+    const double r = std::sqrt(p.x * p.x + p.z * p.z), c = r > 0 ? p.x / r : 1, s = r > 0 ? p.z / r : 0;
     // Outward is to the right of the profile's direction.
-    const double sign = value(piece.radius, meeting.v) < 0 ? -1 : 1;
-    double out = sign * slope(piece.height, meeting.v), up = -slope(piece.radius, meeting.v);
+    const double sign = value(piece.radius, meeting.a) < 0 ? -1 : 1;
+    double out = sign * slope(piece.height, meeting.a), up = -slope(piece.radius, meeting.a);
     if (out == 0 && up == 0) out = 1;
-    hit.t = meeting.t;
-    hit.normal = hit.flat = {out * c, up, out * s};
-    hit.u = std::atan2(-p.z, p.x) / (2 * pi);
-    if (hit.u < 0) hit.u += 1;
-    hit.v = (double(meeting.piece) + meeting.v) / double(pieces_.size());
+    const Vec3 normal{out * c, up, out * s};
+    if (!with_uv) return {normal, normal, 0, 0};
+    double u = std::atan2(-p.z, p.x) / (2 * pi);
+    if (u < 0) u += 1;
+    return {normal, normal, u, (double(meeting.part) + meeting.a) / double(pieces_.size())};
   }
 
   static constexpr std::size_t group = 4;

@@ -1,5 +1,5 @@
-// Rays against the objects, one object after the other: each is given the rays that enter its box
-// before what they have met so far.
+// Rays against the objects: each object is given the rays that enter its box before what they have
+// met so far.
 #include "surface/scene.h"
 
 namespace pse::surface {
@@ -35,8 +35,13 @@ Scene::Scene(std::vector<Object> objects, std::vector<Light> lights) : lights_(s
     if (placed.identity) placed.bounds = own;
     if (placed.bounds.bounded()) bounds_.add(placed.bounds);
     placed.object = std::move(object);
+    const auto index = static_cast<std::uint32_t>(placed_.size());
+    (placed.bounds.bounded() ? bounded_ : endless_).push_back(index);
     placed_.push_back(std::move(placed));
   }
+  std::vector<Box> boxes;
+  for (const std::uint32_t k : bounded_) boxes.push_back(placed_[k].bounds);
+  tree_ = BoxTree(boxes);
   if (bounds_.bounded()) tiny_ = std::max(1e-4 * bounds_.radius(), 1e-12);
 }
 
@@ -49,67 +54,89 @@ bool is_usable(const Ray& ray) {
 
 }  // namespace
 
+Ray Scene::local(const Placed& placed, const Ray& ray) {
+  if (placed.identity) return ray;
+  return {placed.to_object.point(ray.origin), placed.to_object.vector(ray.direction), ray.begin,
+          ray.end};
+}
+
 void Scene::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
-  thread_local std::vector<ShapeHit> best;
-  best.assign(rays.size(), {});
-  for (std::size_t i = 0; i < rays.size(); ++i) hits[i].object = -1;
   // One object that stands where it was made takes the rays as they are.
   const bool direct = placed_.size() == 1 && placed_.front().identity &&
                       std::all_of(rays.begin(), rays.end(), is_usable);
-  if (direct) {
-    placed_.front().object.shape->intersect(rays, best);
-    for (std::size_t i = 0; i < rays.size(); ++i)
-      if (best[i].found()) hits[i].object = 0;
-  } else {
-    trace_each(rays, hits, best);
-  }
+  if (!direct) return trace_many(rays, hits);
+  thread_local std::vector<Meeting> meetings;
+  meetings.assign(rays.size(), {});
+  placed_.front().object.shape->find(rays, meetings);
   for (std::size_t i = 0; i < rays.size(); ++i)
-    if (hits[i].found())
-      finish(rays[i], placed_[static_cast<std::size_t>(hits[i].object)], best[i], hits[i]);
-    else
-      hits[i] = {};
+    hits[i] = {meetings[i], meetings[i].found() ? 0 : -1};
 }
 
-void Scene::trace_each(std::span<const Ray> rays, std::span<Hit> hits,
-                       std::span<ShapeHit> best) const {
-  std::vector<std::uint32_t> which;
-  std::vector<Ray> local;
-  std::vector<ShapeHit> found;
-  which.reserve(rays.size()), local.reserve(rays.size());
-  for (std::size_t k = 0; k < placed_.size(); ++k) {
-    const Placed& placed = placed_[k];
-    which.clear(), local.clear();
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const Ray& ray = rays[i];
-      if (!is_usable(ray)) continue;
-      Ray clipped = ray;
-      clipped.end = std::min(ray.end, best[i].t);
-      const Span1 span = clip(clipped, placed.bounds);
-      if (!(span.begin <= span.end)) continue;
-      which.push_back(static_cast<std::uint32_t>(i));
-      if (!placed.identity)
-        clipped.origin = placed.to_object.point(ray.origin),
-        clipped.direction = placed.to_object.vector(ray.direction);
-      local.push_back(clipped);
+// Each object is given the rays as they came, not cut off at what they have met so far, so that a
+// meeting's last bits do not depend on the other objects.
+void Scene::trace_many(std::span<const Ray> rays, std::span<Hit> hits) const {
+  std::vector<std::uint32_t> usable;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    hits[i] = {};
+    if (is_usable(rays[i])) usable.push_back(static_cast<std::uint32_t>(i));
+  }
+  std::vector<double> nearest(rays.size(), Box::inf);
+  std::vector<Ray> own;
+  std::vector<Meeting> found;
+  const auto try_object = [&](std::uint32_t k, std::span<const std::uint32_t> which) {
+    own.clear();
+    for (const std::uint32_t i : which) own.push_back(local(placed_[k], rays[i]));
+    found.assign(which.size(), {});
+    placed_[k].object.shape->find(own, found);
+    for (std::size_t j = 0; j < which.size(); ++j) {
+      const std::uint32_t i = which[j];
+      const bool first = found[j].t < nearest[i] ||
+                         (found[j].found() && found[j].t == nearest[i] &&
+                          static_cast<int>(k) < hits[i].object);
+      if (first) nearest[i] = found[j].t, hits[i] = {found[j], static_cast<int>(k)};
     }
-    if (local.empty()) continue;
-    found.assign(local.size(), {});
-    placed.object.shape->intersect(local, found);
-    for (std::size_t j = 0; j < which.size(); ++j)
-      if (found[j].t < best[which[j]].t)
-        best[which[j]] = found[j], hits[which[j]].object = static_cast<int>(k);
+  };
+  for (const std::uint32_t k : endless_) try_object(k, usable);
+  tree_.visit(rays, std::move(usable), nearest,
+              [&](std::uint32_t box, std::span<const std::uint32_t> which) {
+                try_object(bounded_[box], which);
+              });
+}
+
+void Scene::describe(std::span<const Ray> rays, std::span<const Hit> hits, bool with_uv,
+                     std::span<Spot> spots) const {
+  thread_local std::vector<Ray> own;
+  thread_local std::vector<Meeting> meetings;
+  thread_local std::vector<ShapePoint> points;
+  // Runs of hits on the same object.
+  for (std::size_t begin = 0, end = 0; begin < hits.size(); begin = end) {
+    const int object = hits[begin].object;
+    const Placed& placed = placed_[static_cast<std::size_t>(object)];
+    own.clear(), meetings.clear();
+    for (; end < hits.size() && hits[end].object == object; ++end) {
+      if (!placed.identity) own.push_back(local(placed, rays[end]));
+      meetings.push_back(hits[end].meeting);
+    }
+    points.resize(meetings.size());
+    placed.object.shape->describe(placed.identity ? rays.subspan(begin, end - begin) : own,
+                                  meetings, with_uv, points);
+    for (std::size_t i = begin; i < end; ++i)
+      place(placed, rays[i], hits[i].t(), points[i - begin], spots[i]);
   }
 }
 
-void Scene::finish(const Ray& ray, const Placed& placed, const ShapeHit& found, Hit& hit) const {
-  hit.t = found.t;
-  hit.place = ray.origin + found.t * ray.direction;
-  hit.point = placed.identity ? hit.place : placed.to_object.point(hit.place);
-  hit.u = found.u, hit.v = found.v;
-  hit.normal = normalized(placed.identity ? found.normal : placed.to_object.transposed(found.normal));
-  hit.flat = normalized(placed.identity ? found.flat : placed.to_object.transposed(found.flat));
-  hit.back = dot(hit.flat, ray.direction) > 0;
-  if (hit.back) hit.normal = -hit.normal, hit.flat = -hit.flat;
+void Scene::place(const Placed& placed, const Ray& ray, double t, const ShapePoint& seen,
+                  Spot& spot) {
+  spot.place = ray.origin + t * ray.direction;
+  spot.point = placed.identity ? spot.place : placed.to_object.point(spot.place);
+  spot.u = seen.u, spot.v = seen.v;
+  const auto turned = [&](const Vec3& normal) {
+    return normalized(placed.identity ? normal : placed.to_object.transposed(normal));
+  };
+  spot.normal = turned(seen.normal);
+  spot.flat = seen.flat == seen.normal ? spot.normal : turned(seen.flat);
+  spot.back = dot(spot.flat, ray.direction) > 0;
+  if (spot.back) spot.normal = -spot.normal, spot.flat = -spot.flat;
 }
 
 std::vector<std::string> Scene::around(const Vec3& point) const {
@@ -118,10 +145,13 @@ std::vector<std::string> Scene::around(const Vec3& point) const {
     if (!placed.bounds.bounded()) continue;
     const Box& b = placed.bounds;
     if (least(point, b.lower) != b.lower || greatest(point, b.upper) != b.upper) continue;
-    const Ray ray{placed.to_object.point(point), placed.to_object.vector({0.31, 0.87, 0.38}), 0};
-    ShapeHit hit;
-    placed.object.shape->intersect(std::span(&ray, 1), std::span(&hit, 1));
-    if (hit.found() && dot(hit.flat, ray.direction) > 0) names.push_back(placed.object.name);
+    const Ray ray = local(placed, {point, {0.31, 0.87, 0.38}});
+    Meeting meeting;
+    placed.object.shape->find(std::span(&ray, 1), std::span(&meeting, 1));
+    if (!meeting.found()) continue;
+    ShapePoint seen;
+    placed.object.shape->describe({&ray, 1}, {&meeting, 1}, false, {&seen, 1});
+    if (dot(seen.flat, ray.direction) > 0) names.push_back(placed.object.name);
   }
   return names;
 }

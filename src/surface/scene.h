@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
+#include "surface/box_tree.h"
 #include "surface/camera.h"
 
 namespace pse::surface {
@@ -27,14 +29,19 @@ Vec3 light_value(const Light& light, LightPart part, const Vec3& place);
 
 // The first meeting of a ray with the scene.
 struct Hit {
-  double t = std::numeric_limits<double>::infinity();
+  Meeting meeting;
   int object = -1;
-  bool back = false;   // the surface is seen from inside
+  bool found() const { return object >= 0; }
+  double t() const { return meeting.t; }
+};
+
+// What is to be seen there.
+struct Spot {
   Vec3 place;          // in the world
   Vec3 point;          // in the object's own frame
   Vec3 normal, flat;   // in the world, of length 1, on the side that the ray comes from
   double u = 0, v = 0;
-  bool found() const { return object >= 0; }
+  bool back = false;   // the surface is seen from inside
 };
 
 class Scene {
@@ -53,9 +60,13 @@ class Scene {
   // The objects whose body the point lies in, by their bounding boxes and a ray.
   std::vector<std::string> around(const Vec3& point) const;
 
-  // hits[i] becomes ray i's first hit. A hit depends on its ray alone. Rays may be anything: those
-  // that are not finite or have no direction meet nothing.
+  // hits[i] becomes ray i's first hit; of two at the same place, that of the object named first. A
+  // hit depends on its ray alone. Rays may be anything: those that are not finite or have no
+  // direction meet nothing.
   void trace(std::span<const Ray> rays, std::span<Hit> hits) const;
+  // What is to be seen at hits that were found with these rays; u and v only where wanted.
+  void describe(std::span<const Ray> rays, std::span<const Hit> hits, bool with_uv,
+                std::span<Spot> spots) const;
 
  private:
   struct Placed {
@@ -64,10 +75,14 @@ class Scene {
     Box bounds;  // in the world
     bool identity = false;
   };
-  void trace_each(std::span<const Ray> rays, std::span<Hit> hits, std::span<ShapeHit> best) const;
-  void finish(const Ray& ray, const Placed& placed, const ShapeHit& found, Hit& hit) const;
+  static Ray local(const Placed& placed, const Ray& ray);
+  void trace_many(std::span<const Ray> rays, std::span<Hit> hits) const;
+  static void place(const Placed& placed, const Ray& ray, double t, const ShapePoint& seen,
+                    Spot& spot);
 
   std::vector<Placed> placed_;
+  std::vector<std::uint32_t> endless_, bounded_;  // indices of objects
+  BoxTree tree_{{}};                              // over the bounded ones
   std::vector<Light> lights_;
   Box bounds_;
   double tiny_ = 1e-4;

@@ -209,13 +209,14 @@ void Shader::radiance(std::span<const Ray> rays, double begin_width, float* cons
   scene_->trace(rays, hits);
   std::vector<Sighting> sightings;
   for (std::size_t i = 0; i < n; ++i) {
-    const double t = hits[i].found() ? hits[i].t : 1;
-    sightings.push_back({rays[i], hits[i], begin_width + lens_->pixel_angle() * t, t});
+    const double t = hits[i].found() ? hits[i].t() : 1;
+    sightings.push_back({static_cast<std::uint32_t>(i), &rays[i],
+                         begin_width + lens_->pixel_angle() * t, t});
   }
   const ir::Module& module = split_->module;
   const auto count = static_cast<std::int64_t>(n);
   const Planes inputs(std::vector<bool>(module.inputs.size(), true), count);
-  names_->write(sightings, inputs.pointers(), shades_background());
+  names_->write(sightings, hits, inputs.pointers(), shades_background());
   const Planes outputs(std::vector<bool>(module.outputs.size(), true), count);
   RunStatus status;
   Scratch scratch;

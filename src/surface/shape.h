@@ -2,11 +2,9 @@
 // paper's pictures and every mesh is one; scene.h places them in the world.
 #pragma once
 
-#include <map>
+#include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
-#include <variant>
 #include <vector>
 
 #include "surface/vec.h"
@@ -19,13 +17,22 @@ struct Ray {
   double begin = 0, end = std::numeric_limits<double>::infinity();
 };
 
-// Where a ray first meets a shape.
-struct ShapeHit {
+// Where a ray first meets a shape: what tells the first of several meetings, and lets the shape say
+// later what its surface is like there.
+struct Meeting {
   double t = std::numeric_limits<double>::infinity();
+  // The shape's own: weights of a triangle's corners and its number, or a profile's parameter and
+  // piece, or a face.
+  double a = 0, b = 0;
+  std::uint32_t part = 0;
+  bool found() const { return t < std::numeric_limits<double>::infinity(); }
+};
+
+// What a shape's surface is like at a meeting.
+struct ShapePoint {
   Vec3 normal;  // outward, of any length but 0
   Vec3 flat;    // the same of the flat triangle, where the shape is made of such; else `normal`
   double u = 0, v = 0;
-  bool found() const { return t < std::numeric_limits<double>::infinity(); }
 };
 
 class Shape {
@@ -33,20 +40,31 @@ class Shape {
   virtual ~Shape() = default;
   // What the shape reaches; of infinite size for the endless plane.
   virtual Box bounds() const = 0;
-  // hits[i] becomes ray i's first hit, or stays not found. A hit depends on its ray alone. Called
-  // from several threads at once. Rays are finite with a direction that is not 0.
-  virtual void intersect(std::span<const Ray> rays, std::span<ShapeHit> hits) const = 0;
+  // meetings[i], not found, becomes ray i's first, or stays. It depends on its ray alone, however
+  // many others there are. Called from several threads at once. Rays are finite with a direction
+  // that is not 0.
+  virtual void find(std::span<const Ray> rays, std::span<Meeting> meetings) const = 0;
+  // What the surface is like at meetings that were found with these rays; u and v only where
+  // wanted, since they may cost as much as all the rest.
+  virtual void describe(std::span<const Ray> rays, std::span<const Meeting> meetings, bool with_uv,
+                        std::span<ShapePoint> points) const = 0;
 };
 
 // A shape that is met ray by ray.
 class SingleShape : public Shape {
  public:
-  void intersect(std::span<const Ray> rays, std::span<ShapeHit> hits) const final {
-    for (std::size_t i = 0; i < rays.size(); ++i) meet(rays[i], hits[i]);
+  void find(std::span<const Ray> rays, std::span<Meeting> meetings) const override {
+    for (std::size_t i = 0; i < rays.size(); ++i) meet(rays[i], meetings[i]);
+  }
+  void describe(std::span<const Ray> rays, std::span<const Meeting> meetings, bool with_uv,
+                std::span<ShapePoint> points) const override {
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      points[i] = look(rays[i].origin + meetings[i].t * rays[i].direction, meetings[i], with_uv);
   }
 
  protected:
-  virtual void meet(const Ray& ray, ShapeHit& hit) const = 0;
+  virtual void meet(const Ray& ray, Meeting& meeting) const = 0;
+  virtual ShapePoint look(const Vec3& place, const Meeting& meeting, bool with_uv) const = 0;
 };
 
 // Part of the ray inside a box, cut to the ray's own range; empty (begin > end) where it misses.

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <expected>
+#include <map>
+#include <string>
 
 #include "surface/mesh.h"
 #include "surface/shapes.h"

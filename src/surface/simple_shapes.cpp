@@ -16,7 +16,7 @@ class Sphere : public SingleShape {
   }
 
  private:
-  void meet(const Ray& ray, ShapeHit& hit) const override {
+  void meet(const Ray& ray, Meeting& meeting) const override {
     // Measured from the ray's point nearest to the centre, so that far rays lose nothing.
     const double dd = dot(ray.direction, ray.direction);
     const double nearest = -dot(ray.origin, ray.direction) / dd;
@@ -27,11 +27,14 @@ class Sphere : public SingleShape {
     double t = nearest - half;
     if (!(t > ray.begin)) t = nearest + half;
     if (!(t > ray.begin && t < ray.end)) return;
-    hit.t = t;
-    hit.normal = hit.flat = (1 / radius_) * (closest + (t - nearest) * ray.direction);
-    hit.u = std::atan2(-hit.normal.z, hit.normal.x) / (2 * pi);
-    if (hit.u < 0) hit.u += 1;
-    hit.v = 0.5 + std::asin(std::clamp(hit.normal.y, -1.0, 1.0)) / pi;
+    meeting.t = t;
+  }
+  ShapePoint look(const Vec3& place, const Meeting&, bool with_uv) const override {
+    const Vec3 normal = (1 / radius_) * place;
+    if (!with_uv) return {normal, normal, 0, 0};
+    double u = std::atan2(-normal.z, normal.x) / (2 * pi);
+    if (u < 0) u += 1;
+    return {normal, normal, u, 0.5 + std::asin(std::clamp(normal.y, -1.0, 1.0)) / pi};
   }
 
   double radius_;
@@ -43,7 +46,8 @@ class Cuboid : public SingleShape {
   Box bounds() const override { return box_; }
 
  private:
-  void meet(const Ray& ray, ShapeHit& hit) const override {
+  // Faces are counted by axis, the lower one first.
+  void meet(const Ray& ray, Meeting& meeting) const override {
     // The last entry into the three slabs, and the first exit.
     double in = -Box::inf, out = Box::inf;
     int in_axis = 0, out_axis = 0;
@@ -62,20 +66,26 @@ class Cuboid : public SingleShape {
     const double t = entering ? in : out;
     if (!(t > ray.begin && t < ray.end)) return;
     const int axis = entering ? in_axis : out_axis;
-    const double side = (ray.direction[axis] > 0) == entering ? -1 : 1;
-    hit.t = t;
-    hit.normal = hit.flat = {axis == 0 ? side : 0, axis == 1 ? side : 0, axis == 2 ? side : 0};
-    const Vec3 p = ray.origin + t * ray.direction, size = box_.upper - box_.lower;
+    const bool lower = (ray.direction[axis] > 0) == entering;
+    meeting.t = t, meeting.part = static_cast<std::uint32_t>(2 * axis + (lower ? 0 : 1));
+  }
+  ShapePoint look(const Vec3& p, const Meeting& meeting, bool) const override {
+    const std::uint32_t axis = meeting.part / 2;
+    const double side = meeting.part % 2 == 0 ? -1 : 1;
+    ShapePoint point;
+    point.normal = point.flat = {axis == 0 ? side : 0, axis == 1 ? side : 0, axis == 2 ? side : 0};
+    const Vec3 size = box_.upper - box_.lower;
     const Vec3 q = {(p.x - box_.lower.x) / size.x, (p.y - box_.lower.y) / size.y,
                     (p.z - box_.lower.z) / size.z};
     // Each face has the whole square, upright where it stands.
     if (axis == 0)
-      hit.u = side > 0 ? 1 - q.z : q.z, hit.v = q.y;
+      point.u = side > 0 ? 1 - q.z : q.z, point.v = q.y;
     else if (axis == 1)
-      hit.u = q.x, hit.v = side > 0 ? 1 - q.z : q.z;
+      point.u = q.x, point.v = side > 0 ? 1 - q.z : q.z;
     else
-      hit.u = side > 0 ? q.x : 1 - q.x, hit.v = q.y;
-    hit.u = std::clamp(hit.u, 0.0, 1.0), hit.v = std::clamp(hit.v, 0.0, 1.0);
+      point.u = side > 0 ? q.x : 1 - q.x, point.v = q.y;
+    point.u = std::clamp(point.u, 0.0, 1.0), point.v = std::clamp(point.v, 0.0, 1.0);
+    return point;
   }
 
   Box box_;
@@ -87,14 +97,15 @@ class Plane : public SingleShape {
   Box bounds() const override { return {{-half_, 0, -half_}, {half_, 0, half_}}; }
 
  private:
-  void meet(const Ray& ray, ShapeHit& hit) const override {
+  void meet(const Ray& ray, Meeting& meeting) const override {
     const double t = -ray.origin.y / ray.direction.y;
     if (!(t > ray.begin && t < ray.end)) return;  // also where the ray is parallel
     const double x = ray.origin.x + t * ray.direction.x, z = ray.origin.z + t * ray.direction.z;
     if (!(std::abs(x) <= half_ && std::abs(z) <= half_)) return;
-    hit.t = t;
-    hit.normal = hit.flat = {0, 1, 0};
-    hit.u = x, hit.v = -z;
+    meeting.t = t;
+  }
+  ShapePoint look(const Vec3& place, const Meeting&, bool) const override {
+    return {{0, 1, 0}, {0, 1, 0}, place.x, -place.z};
   }
 
   double half_;

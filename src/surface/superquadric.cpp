@@ -85,7 +85,7 @@ class Superquadric : public SingleShape {
   }
   static constexpr int steps = 128;
 
-  void meet(const Ray& ray, ShapeHit& hit) const override {
+  void meet(const Ray& ray, Meeting& meeting) const override {
     const Span1 span = clip(ray, bounds());
     if (!(span.begin <= span.end) || !std::isfinite(span.end)) return;
     double t;
@@ -102,11 +102,18 @@ class Superquadric : public SingleShape {
     Vec3 normal;
     gauge(p, normal);
     if (!(dot(normal, normal) > 0)) return;
-    hit.t = t;
-    hit.normal = hit.flat = normal;
-    hit.u = std::atan2(-p.z / axes_.z, p.x / axes_.x) / (2 * pi);
-    if (hit.u < 0) hit.u += 1;
-    hit.v = 0.5 + std::atan2(p.y / axes_.y, std::hypot(p.x / axes_.x, p.z / axes_.z)) / pi;
+    meeting.t = t;
+  }
+
+  ShapePoint look(const Vec3& p, const Meeting&, bool with_uv) const override {
+    ShapePoint point;
+    gauge(p, point.normal);
+    point.flat = point.normal;
+    if (!with_uv) return point;
+    point.u = std::atan2(-p.z / axes_.z, p.x / axes_.x) / (2 * pi);
+    if (point.u < 0) point.u += 1;
+    point.v = 0.5 + std::atan2(p.y / axes_.y, std::hypot(p.x / axes_.x, p.z / axes_.z)) / pi;
+    return point;
   }
 
   Vec3 axes_;

@@ -76,85 +76,126 @@ NameWriter::NameWriter(const ir::Module& module, std::shared_ptr<const Scene> sc
     if (auto wanted = find(module.inputs[i].name, scene_->lights().size())) {
       wanted->input = i;
       wanted_.push_back(*wanted);
+      const auto one_of = [&](std::initializer_list<What> list) {
+        return std::find(list.begin(), list.end(), wanted->what) != list.end();
+      };
+      using enum What;
+      if (one_of({uv})) wants_uv_ = true;
+      if (one_of({pixelsize, pixel_freq, dpdx, dpdy})) wants_shifts_ = true;
+      if (!one_of({id, depth, hit, view, origin, direction, axis_x, axis_y, axis_z}))
+        wants_spots_ = true;
     }
   }
 }
 
 // How the point on the surface moves, in the object's frame, when the place in the picture moves by
 // one pixel along `axis`: the step across the ray, carried along the ray onto the tangent plane.
-Vec3 NameWriter::shift(const Sighting& s, const Vec3& axis) const {
-  const Vec3& d = s.ray.direction;
-  Vec3 step = s.width * normalized(axis - dot(axis, d) * d);
-  const double facing = std::min(dot(s.hit.flat, d), -0.05);
-  step = step - (dot(s.hit.flat, step) / facing) * d;
-  return scene_->to_object(static_cast<std::size_t>(s.hit.object)).vector(step);
+Vec3 NameWriter::shift(const Shown& s, const Vec3& axis) const {
+  const Vec3& d = s.sighting->ray->direction;
+  Vec3 step = s.sighting->width * normalized(axis - dot(axis, d) * d);
+  const double facing = std::min(dot(s.spot->flat, d), -0.05);
+  step = step - (dot(s.spot->flat, step) / facing) * d;
+  return scene_->to_object(static_cast<std::size_t>(s.object)).vector(step);
 }
 
-Vec3 NameWriter::value(const Sighting& s, const Wanted& wanted) const {
-  const Hit& h = s.hit;
-  const bool seen = h.found();
-  const Affine* map =
-      seen ? &scene_->object(static_cast<std::size_t>(h.object)).to_world : nullptr;
-  const auto lit = [&]() -> const Light& { return scene_->lights()[wanted.light]; };
+template <class Put>
+void NameWriter::each(const Wanted& wanted, std::span<const Shown> shown, const Put& put) const {
+  const auto all = [&](const auto& value) {
+    for (const Shown& s : shown) put(s, value(s));
+  };
+  const auto one = [&](const auto& value) {
+    for (const Shown& s : shown) put(s, Vec3{value(s), 0, 0});
+  };
+  const auto axes = [&](int which) {
+    all([&](const Shown& s) {
+      const Vec3 unit{which == 0 ? 1.0 : 0, which == 1 ? 1.0 : 0, which == 2 ? 1.0 : 0};
+      if (s.object < 0) return unit;
+      return axis(scene_->object(static_cast<std::size_t>(s.object)).to_world, which);
+    });
+  };
+  // From the place as it is stored, so that a G-buffer gives the same.
+  const auto lit = [&](LightPart part) {
+    const Light& light = scene_->lights()[wanted.light];
+    const bool same = !light.is_lamp && part != LightPart::position;
+    const Vec3 everywhere = light_value(light, part, {});
+    all([&](const Shown& s) {
+      return same ? everywhere : light_value(light, part, rounded(s.spot->place));
+    });
+  };
+  // The side of a square as large as the pixel's image on the surface.
+  const auto size = [](const Shown& s) {
+    return s.object < 0 ? s.sighting->width : std::sqrt(length(cross(s.dx, s.dy)));
+  };
   switch (wanted.what) {
-    case What::point: return h.point;
-    case What::place: return h.place;
-    case What::normal: return h.normal;
-    case What::flat_normal: return h.flat;
-    case What::uv: return {h.u, h.v, 0};
-    case What::id: return {seen ? h.object + 1.0 : 0, 0, 0};
-    case What::depth: return {seen ? s.depth : far_away, 0, 0};
-    case What::hit: return {seen ? 1.0 : 0, 0, 0};
-    case What::backface: return {h.back ? 1.0 : 0, 0, 0};
-    case What::view: return -s.ray.direction;
-    case What::origin: return s.ray.origin;
-    case What::direction: return s.ray.direction;
-    case What::pixelsize:
-    case What::pixel_freq: {
-      // The side of a square as large as the pixel's image on the surface.
-      double size = s.width;
-      if (seen) size = std::sqrt(length(cross(shift(s, right_), shift(s, up_))));
-      return {wanted.what == What::pixelsize ? size : 0.5 / static_cast<float>(size), 0, 0};
-    }
-    case What::dpdx: return seen ? shift(s, right_) : Vec3{};
-    case What::dpdy: return seen ? -shift(s, up_) : Vec3{};
-    case What::axis_x: return seen ? axis(*map, 0) : Vec3{1, 0, 0};
-    case What::axis_y: return seen ? axis(*map, 1) : Vec3{0, 1, 0};
-    case What::axis_z: return seen ? axis(*map, 2) : Vec3{0, 0, 1};
-    // From the place as it is stored, so that a G-buffer gives the same.
-    case What::light_direction: return light_value(lit(), LightPart::direction, rounded(h.place));
-    case What::light_color: return light_value(lit(), LightPart::color, rounded(h.place));
-    case What::light_position: return light_value(lit(), LightPart::position, rounded(h.place));
-    case What::light_radius: return light_value(lit(), LightPart::radius, rounded(h.place));
+    case What::point: return all([](const Shown& s) { return s.spot->point; });
+    case What::place: return all([](const Shown& s) { return s.spot->place; });
+    case What::normal: return all([](const Shown& s) { return s.spot->normal; });
+    case What::flat_normal: return all([](const Shown& s) { return s.spot->flat; });
+    case What::uv: return all([](const Shown& s) { return Vec3{s.spot->u, s.spot->v, 0}; });
+    case What::id: return one([](const Shown& s) { return s.object + 1.0; });
+    case What::depth:
+      return one([](const Shown& s) { return s.object < 0 ? far_away : s.sighting->depth; });
+    case What::hit: return one([](const Shown& s) { return s.object < 0 ? 0.0 : 1.0; });
+    case What::backface: return one([](const Shown& s) { return s.spot->back ? 1.0 : 0.0; });
+    case What::view: return all([](const Shown& s) { return -s.sighting->ray->direction; });
+    case What::origin: return all([](const Shown& s) { return s.sighting->ray->origin; });
+    case What::direction: return all([](const Shown& s) { return s.sighting->ray->direction; });
+    case What::pixelsize: return one(size);
+    case What::pixel_freq:
+      return one([&](const Shown& s) { return 0.5 / static_cast<float>(size(s)); });
+    case What::dpdx: return all([](const Shown& s) { return s.dx; });
+    case What::dpdy: return all([](const Shown& s) { return -s.dy; });
+    case What::axis_x: return axes(0);
+    case What::axis_y: return axes(1);
+    case What::axis_z: return axes(2);
+    case What::light_direction: return lit(LightPart::direction);
+    case What::light_color: return lit(LightPart::color);
+    case What::light_position: return lit(LightPart::position);
+    case What::light_radius: return lit(LightPart::radius);
   }
-  return {};
 }
 
-void NameWriter::write(std::span<const Sighting> sightings, std::span<float* const> planes,
-                       bool misses) const {
+void NameWriter::write(std::span<const Sighting> sightings, std::span<const Hit> hits,
+                       std::span<float* const> planes, bool misses) const {
+  // What is shown: objects, and the background where it is shaded.
+  thread_local std::vector<Shown> shown;
+  thread_local std::vector<Ray> rays;
+  thread_local std::vector<Hit> found;
+  thread_local std::vector<Spot> spots;
+  shown.clear(), rays.clear(), found.clear();
+  for (std::size_t k = 0; k < sightings.size(); ++k) {
+    if (hits[k].found()) rays.push_back(*sightings[k].ray), found.push_back(hits[k]);
+    if (hits[k].found() || misses) shown.push_back({&sightings[k], nullptr, hits[k].object, {}, {}});
+  }
+  spots.resize(rays.size());
+  if (wants_spots_) scene_->describe(rays, found, wants_uv_, spots);
+  static const Spot nothing;
+  const Spot* next = spots.data();
+  for (Shown& s : shown) {
+    s.spot = s.object < 0 ? &nothing : next++;
+    if (wants_shifts_ && s.object >= 0) s.dx = shift(s, right_), s.dy = shift(s, up_);
+  }
+
+  // The components of a vector stand side by side and are computed once.
   for (std::size_t k = 0; k < wanted_.size(); ++k) {
     const Wanted& wanted = wanted_[k];
-    float* out = planes[wanted.input];
-    if (out == nullptr) continue;
-    // The components of a vector stand side by side and are computed once.
     std::array<float*, 3> outs{};
-    std::size_t last = k;
-    outs[static_cast<std::size_t>(wanted.component)] = out;
-    while (last + 1 < wanted_.size() && wanted_[last + 1].what == wanted.what &&
-           wanted_[last + 1].light == wanted.light &&
-           outs[static_cast<std::size_t>(wanted_[last + 1].component)] == nullptr) {
-      ++last;
-      outs[static_cast<std::size_t>(wanted_[last].component)] = planes[wanted_[last].input];
+    outs[static_cast<std::size_t>(wanted.component)] = planes[wanted.input];
+    while (k + 1 < wanted_.size() && wanted_[k + 1].what == wanted.what &&
+           wanted_[k + 1].light == wanted.light &&
+           outs[static_cast<std::size_t>(wanted_[k + 1].component)] == nullptr) {
+      ++k;
+      outs[static_cast<std::size_t>(wanted_[k].component)] = planes[wanted_[k].input];
     }
-    const bool all = misses || wanted.what == What::id;
-    for (std::size_t i = 0; i < sightings.size(); ++i) {
-      if (!all && !sightings[i].hit.found()) continue;
-      const Vec3 v = value(sightings[i], wanted);
+    if (wanted.what == What::id && outs[0] != nullptr)
+      for (const Sighting& s : sightings) outs[0][s.sample] = 0;
+    if (outs == std::array<float*, 3>{}) continue;
+    each(wanted, shown, [&](const Shown& s, const Vec3& v) {
+      const std::uint32_t i = s.sighting->sample;
       if (outs[0] != nullptr) outs[0][i] = static_cast<float>(v.x);
       if (outs[1] != nullptr) outs[1][i] = static_cast<float>(v.y);
       if (outs[2] != nullptr) outs[2][i] = static_cast<float>(v.z);
-    }
-    k = last;
+    });
   }
 }
 
@@ -175,32 +216,55 @@ SurfaceSource::SurfaceSource(const ir::Module& module, std::shared_ptr<const Sce
                              const Lens& lens, bool misses)
     : scene_(scene), lens_(lens), names_(module, std::move(scene), lens), misses_(misses) {}
 
+namespace {
+
+// The order in which rays are sent: where samples are rows of a picture, in blocks of 4 by 2 pixels,
+// so that eight rays in a row lie side by side. (What a sample shows does not depend on it.)
+std::vector<std::uint32_t> in_blocks(std::span<const double> y) {
+  std::vector<std::uint32_t> order;
+  order.reserve(y.size());
+  std::size_t row = 1;
+  while (row < y.size() && y[row] == y[0]) ++row;
+  const std::size_t rows = y.size() / row;
+  const auto add = [&](std::size_t i) { order.push_back(static_cast<std::uint32_t>(i)); };
+  if (row < 8 || row * rows != y.size()) {
+    for (std::size_t i = 0; i < y.size(); ++i) add(i);
+    return order;
+  }
+  for (std::size_t top = 0; top < rows; top += 2)
+    for (std::size_t left = 0; left < row; left += 4)
+      for (std::size_t down = top; down < std::min(top + 2, rows); ++down)
+        for (std::size_t across = left; across < std::min(left + 4, row); ++across)
+          add(down * row + across);
+  return order;
+}
+
+}  // namespace
+
 // A piece at a time, so that rays and hits stay in the cache.
 void SurfaceSource::fill(std::span<const double> x, std::span<const double> y,
                          std::span<float* const> planes) const {
-  constexpr std::size_t piece = 512;
-  std::vector<float*> moved(planes.begin(), planes.end());
-  for (std::size_t i = 0; i < x.size(); i += piece) {
-    const std::size_t count = std::min(piece, x.size() - i);
-    for (std::size_t k = 0; k < moved.size(); ++k)
-      moved[k] = planes[k] == nullptr ? nullptr : planes[k] + i;
-    fill_some(x.subspan(i, count), y.subspan(i, count), moved);
-  }
+  constexpr std::size_t piece = 256;
+  const std::vector<std::uint32_t> order = in_blocks(y);
+  for (std::size_t i = 0; i < x.size(); i += piece)
+    fill_some(x, y, std::span(order).subspan(i, std::min(piece, x.size() - i)), planes);
 }
 
 void SurfaceSource::fill_some(std::span<const double> x, std::span<const double> y,
+                              std::span<const std::uint32_t> samples,
                               std::span<float* const> planes) const {
   thread_local std::vector<Ray> rays;
   thread_local std::vector<Hit> hits;
   thread_local std::vector<Sighting> sightings;
-  rays.resize(x.size()), hits.resize(x.size()), sightings.clear();
-  for (std::size_t i = 0; i < x.size(); ++i) rays[i] = lens_.ray(x[i], y[i]);
+  rays.clear(), sightings.clear();
+  hits.resize(samples.size());
+  for (const std::uint32_t i : samples) rays.push_back(lens_.ray(x[i], y[i]));
   scene_->trace(rays, hits);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double t = hits[i].found() ? hits[i].t : 1;
-    sightings.push_back({rays[i], hits[i], lens_.width(rays[i], t), lens_.depth(rays[i], t)});
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const double t = hits[k].found() ? hits[k].t() : 1;
+    sightings.push_back({samples[k], &rays[k], lens_.width(rays[k], t), lens_.depth(rays[k], t)});
   }
-  names_.write(sightings, planes, misses_);
+  names_.write(sightings, hits, planes, misses_);
 }
 
 TileSource at_pixel_centres(std::shared_ptr<const SampleSource> source, double sample_x,

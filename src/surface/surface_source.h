@@ -16,10 +16,10 @@ namespace pse::surface {
 // `light2_direction`.
 std::vector<StreamName> surface_names(std::size_t lights);
 
-// A ray, what it met, and how wide a pixel is there.
+// A sample's ray, and how wide a pixel is where it meets something.
 struct Sighting {
-  const Ray& ray;
-  const Hit& hit;
+  std::uint32_t sample = 0;  // its index in the planes
+  const Ray* ray = nullptr;
   double width = 0;  // of a pixel across the ray, metres
   double depth = 0;
 };
@@ -30,11 +30,18 @@ class NameWriter {
   NameWriter(const ir::Module& module, std::shared_ptr<const Scene> scene, const Lens& lens);
 
   // planes[i] receives module input i, for those that are names of surfaces; null: not wanted.
-  // Without `misses`, samples that show nothing get their `id` only.
-  void write(std::span<const Sighting> sightings, std::span<float* const> planes,
-             bool misses) const;
+  // hits[k] is what sighting k met. Without `misses`, samples that show nothing get their `id` only.
+  void write(std::span<const Sighting> sightings, std::span<const Hit> hits,
+             std::span<float* const> planes, bool misses) const;
 
  private:
+  // What a sample shows: a sighting with its spot, and how `point` moves from pixel to pixel.
+  struct Shown {
+    const Sighting* sighting;
+    const Spot* spot;
+    int object;
+    Vec3 dx, dy;  // where wanted
+  };
   enum class What {
     point, place, normal, flat_normal, uv, id, depth, hit, backface, view, origin, direction,
     pixelsize, pixel_freq, dpdx, dpdy, axis_x, axis_y, axis_z,
@@ -47,12 +54,15 @@ class NameWriter {
     std::size_t light;
   };
   static std::optional<Wanted> find(const std::string& name, std::size_t lights);
-  Vec3 value(const Sighting& s, const Wanted& wanted) const;
-  Vec3 shift(const Sighting& s, const Vec3& axis) const;
+  // Calls put(shown, value) with the value of a name at each sample.
+  template <class Put>
+  void each(const Wanted& wanted, std::span<const Shown> shown, const Put& put) const;
+  Vec3 shift(const Shown& s, const Vec3& axis) const;
 
   std::shared_ptr<const Scene> scene_;
   Vec3 right_, up_;
   std::vector<Wanted> wanted_;
+  bool wants_shifts_ = false, wants_spots_ = false, wants_uv_ = false;
 };
 
 // Sets the frame-rate inputs that a scene brings: eye, light_count.
@@ -70,7 +80,7 @@ class SurfaceSource : public SampleSource {
 
  private:
   void fill_some(std::span<const double> x, std::span<const double> y,
-                 std::span<float* const> planes) const;
+                 std::span<const std::uint32_t> samples, std::span<float* const> planes) const;
 
   std::shared_ptr<const Scene> scene_;
   Lens lens_;

@@ -18,7 +18,7 @@ class Torus : public SingleShape {
   }
 
  private:
-  void meet(const Ray& ray, ShapeHit& hit) const override {
+  void meet(const Ray& ray, Meeting& meeting) const override {
     // The part of the ray inside the box, as x in [0, 1], so that the numbers stay near 1.
     const Span1 span = clip(ray, bounds());
     if (!(span.begin <= span.end)) return;
@@ -34,22 +34,20 @@ class Torus : public SingleShape {
     for (std::size_t i = 0; i < roots.count; ++i) {
       const double t = span.begin + stretch * roots.at[i];
       if (!(t > ray.begin && t < ray.end)) continue;
-      fill(ray, t, hit);
+      meeting.t = t;
       return;
     }
   }
 
-  void fill(const Ray& ray, double t, ShapeHit& hit) const {
-    const Vec3 p = ray.origin + t * ray.direction;
+  ShapePoint look(const Vec3& p, const Meeting&, bool with_uv) const override {
     const double ring = std::sqrt(p.x * p.x + p.z * p.z);
     const Vec3 middle =
         ring > 0 ? (major_ / ring) * Vec3{p.x, 0, p.z} : Vec3{major_, 0, 0};
-    hit.t = t;
-    hit.normal = hit.flat = p - middle;
-    hit.u = std::atan2(-p.z, p.x) / (2 * pi);
-    if (hit.u < 0) hit.u += 1;
-    hit.v = std::atan2(p.y, ring - major_) / (2 * pi);
-    if (hit.v < 0) hit.v += 1;
+    if (!with_uv) return {p - middle, p - middle, 0, 0};
+    double u = std::atan2(-p.z, p.x) / (2 * pi), v = std::atan2(p.y, ring - major_) / (2 * pi);
+    if (u < 0) u += 1;
+    if (v < 0) v += 1;
+    return {p - middle, p - middle, u, v};
   }
 
   double major_, minor_;

@@ -8,19 +8,23 @@ Vec3 vector_at(const float* const* arguments, std::size_t first, std::int64_t i)
   return {arguments[first][i], arguments[first + 1][i], arguments[first + 2][i]};
 }
 
-void write_hits(std::span<const Ray> rays, std::span<const Hit> hits, float* const* results) {
+void write_hits(const Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits,
+                float* const* results) {
+  std::vector<Ray> seen_rays;
+  std::vector<Hit> seen;
+  for (std::size_t i = 0; i < hits.size(); ++i)
+    if (hits[i].found()) seen_rays.push_back(rays[i]), seen.push_back(hits[i]);
+  std::vector<Spot> spots(seen.size());
+  scene.describe(seen_rays, seen, true, spots);
+  std::size_t next = 0;
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    const Hit& h = hits[i];
-    const bool seen = h.found();
-    const Vec3 zero;
-    const Vec3 &place = seen ? h.place : zero, &point = seen ? h.point : zero,
-               &normal = seen ? h.normal : zero;
-    const double distance = seen ? h.t * length(rays[i].direction)
-                                 : std::numeric_limits<double>::infinity();
+    const Spot s = hits[i].found() ? spots[next++] : Spot{};
+    const double distance =
+        hits[i].found() ? hits[i].t() * length(rays[i].direction) : hits[i].t();
     const std::array<double, hit_components> values = {
-        distance,  place.x,  place.y,         place.z, point.x, point.y, point.z,
-        normal.x,  normal.y, normal.z,        h.u,     h.v,     seen ? h.object + 1.0 : 0,
-        h.back ? 1.0 : 0};
+        distance,   s.place.x,  s.place.y,  s.place.z, s.point.x, s.point.y, s.point.z,
+        s.normal.x, s.normal.y, s.normal.z, s.u,       s.v,       hits[i].object + 1.0,
+        s.back ? 1.0 : 0};
     for (std::size_t c = 0; c < values.size(); ++c) results[c][i] = static_cast<float>(values[c]);
   }
 }
@@ -57,7 +61,7 @@ void TraceCall::run(void* self, std::int64_t count, const float* const* argument
   if (call.what == What::radiance) return call.shader->radiance(rays, 0, results);
   std::vector<Hit> hits(n);
   scene->trace(rays, hits);
-  if (call.what == What::trace) return write_hits(rays, hits, results);
+  if (call.what == What::trace) return write_hits(*scene, rays, hits, results);
   for (std::size_t i = 0; i < n; ++i) results[0][i] = hits[i].found() ? 0.0f : 1.0f;
 }
 

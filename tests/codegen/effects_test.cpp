@@ -119,6 +119,45 @@ TEST_P(Effect, ExternalsTakeAndGiveWholeVectors) {
   EXPECT_GE(counter.samples, 23);
 }
 
+// In a branch that only every third sample takes, the host is asked for these alone.
+void host_in_branch(void* user, std::int64_t count, const float* const* arguments,
+                    float* const* results) {
+  auto* asked = static_cast<std::vector<float>*>(user);
+  for (std::int64_t i = 0; i < count; ++i) {
+    asked->push_back(arguments[0][i]);
+    results[0][i] = 10 * arguments[0][i];
+  }
+}
+
+TEST_P(Effect, ExternalsAreAskedForActiveSamplesOnly) {
+  TestProgram program;
+  ir::Module& module = program.split.module;
+  module.externals = {{"host", 1, 1}};
+  ir::Builder& b = program.build;
+  const ir::Value x = program.input(), taken = program.input();
+  const ir::Type types[] = {ir::Type::f32};
+  const ir::Value condition = b.emit(Op::flt, {b.const_f32(0.5f), taken});
+  ir::Region then_region, else_region;
+  b.begin_region(then_region);
+  const ir::Value arguments[] = {x};
+  then_region.yields = b.emit_multi(Op::external, arguments, types, 0);
+  b.end_region();
+  else_region.yields = {x};
+  program.output(b.emit_if(condition, std::move(then_region), std::move(else_region))[0]);
+  program.finish();
+  const auto kernel = compile(program, GetParam());
+  ASSERT_TRUE(kernel);
+  std::vector<float> asked, third(24);
+  for (std::size_t s = 0; s < third.size(); s += 3) third[s] = 1;
+  Runner once;
+  once.state.externals = {{&host_in_branch, &asked}};
+  const Columns out = once(*kernel, module, {0, 0}, {counting(24), third}, 24);
+  for (int s = 0; s < 24; ++s)
+    EXPECT_EQ(out[0][s], s % 3 == 0 ? 10.0f * static_cast<float>(s) : static_cast<float>(s)) << s;
+  // The last vector repeats its last sample, which is not taken.
+  EXPECT_EQ(asked, (std::vector<float>{0, 3, 6, 9, 12, 15, 18, 21}));
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Effect, ::testing::ValuesIn(all_machines()), machine_name);
 
 }  // namespace

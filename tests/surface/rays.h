@@ -22,9 +22,14 @@ inline std::vector<Ray> rays_inward(std::size_t count, double radius, unsigned s
   return rays;
 }
 
+// What a ray meets first, and what it sees there.
+struct ShapeHit : Meeting, ShapePoint {};
 inline ShapeHit first_hit(const Shape& shape, const Ray& ray) {
   ShapeHit hit;
-  shape.intersect(std::span(&ray, 1), std::span(&hit, 1));
+  shape.find({&ray, 1}, {static_cast<Meeting*>(&hit), 1});
+  if (hit.found())
+    shape.describe({&ray, 1}, {static_cast<const Meeting*>(&hit), 1}, true,
+                   {static_cast<ShapePoint*>(&hit), 1});
   return hit;
 }
 

@@ -63,7 +63,7 @@ void FunctionEmitter::emit_call(const ir::Instruction& in) {
   }
 }
 
-// All lanes go through arrays on the stack, active or not: the function is pure.
+// Lanes go through arrays on the stack; where only some may be active, the host picks those out.
 void FunctionEmitter::emit_external(const ir::Instruction& in) {
   bool wide = false;
   for (const ir::Value value : in.operands) wide = wide || varying(value);
@@ -90,8 +90,18 @@ void FunctionEmitter::emit_external(const ir::Instruction& in) {
       b_.CreateLoad(ptr_, b_.CreateConstInBoundsGEP1_64(ptr_, functions, place));
   llvm::Value* user =
       b_.CreateLoad(ptr_, b_.CreateConstInBoundsGEP1_64(ptr_, functions, place + 1));
-  auto* signature = llvm::FunctionType::get(b_.getVoidTy(), {ptr_, i64_, ptr_, ptr_}, false);
-  b_.CreateCall(signature, function, {user, b_.getInt64(lanes), argument_table, result_table});
+  if (wide && mask_ && lanes > 1) {
+    llvm::Value* active = b_.CreateZExt(b_.CreateBitCast(mask_, b_.getIntNTy(lanes)), i64_);
+    llvm::Value* call_active = call_field(offsetof(KernelCall, call_active), ptr_);
+    auto* signature = llvm::FunctionType::get(
+        b_.getVoidTy(), {ptr_, ptr_, i64_, i64_, i64_, ptr_, i64_, ptr_}, false);
+    b_.CreateCall(signature, call_active,
+                  {function, user, active, b_.getInt64(lanes), b_.getInt64(in.operands.size()),
+                   argument_table, b_.getInt64(in.results.size()), result_table});
+  } else {
+    auto* signature = llvm::FunctionType::get(b_.getVoidTy(), {ptr_, i64_, ptr_, ptr_}, false);
+    b_.CreateCall(signature, function, {user, b_.getInt64(lanes), argument_table, result_table});
+  }
   for (std::size_t i = 0; i < in.results.size(); ++i) {
     values_[in.results[i]] = b_.CreateLoad(lanes_type(f32_, lanes), results[i]);
   }

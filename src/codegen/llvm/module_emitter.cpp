@@ -106,7 +106,7 @@ void ModuleEmitter::emit_frame() {
 bool ModuleEmitter::takes_mask(std::uint32_t index, unsigned lanes) const {
   const auto& body = ir_.functions[index].body.body;
   const auto depends = [](const ir::Instruction& in) {
-    return !in.regions.empty() || in.op == ir::Op::call;
+    return !in.regions.empty() || in.op == ir::Op::call || in.op == ir::Op::external;
   };
   return lanes > 1 && std::ranges::any_of(body, depends);
 }

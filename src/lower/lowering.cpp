@@ -225,7 +225,7 @@ void Lowering::declare_knob(const AssignStmt& assign, const std::string& name, c
             "write a number, a vector of numbers or a text");
     return;
   }
-  // What a module sets twice is what it was set to last, and no knob.
+  // Of what a module sets twice, the last counts.
   if (&scope != &main_ && scope.constants[name] != assign.value.get()) return;
   Knob knob;
   knob.name = name;

@@ -45,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(
              "2:operand-types: `turbulence_octaves` cannot be called with a text: `*` does not work on a text and a "
              "number (see library/turbulence.pse:"},
         Case{"a = spline(0.5, [1])", "1:index-base: `spline` cannot be called with a number and a number: "},
-        Case{"function f(p)\n  q = p\na = hypertexture(f)", "`f` returns no value"},
+        Case{"function f(p)\n  q = p\na = sqrt(f(1))", "3:no-value: `f` returns no value"},
         Case{"a = Noise(point, sed = 2)", "1:unknown-argument: `Noise` has no parameter `sed` (did you mean `seed`?)"},
         Case{"a = vec3(1, 2, 3)", "1:unknown-function: there is no function `vec3` (write a vector as `[a b c]`)"},
         Case{"color = sin", "1:output-kind: `color` is a function, which makes no picture (call the function)"},

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 namespace pse {
 
@@ -31,5 +32,19 @@ std::array<float, 3> vnoise(const std::array<float, 3>& p, float seed = 0);
 float noise1985(const std::array<float, 3>& p, float seed = 0);
 float noise1989(const std::array<float, 3>& p, float seed = 0);
 float book_noise(const std::array<float, 3>& p);
+
+// The same for lists: noise({x, y, z}). The list's length is the dimension, 2 to 4.
+template <std::size_t N>
+float noise(const float (&p)[N], float seed = 0) {
+  return noise(std::to_array(p), seed);
+}
+template <std::size_t N>
+float pnoise(const float (&p)[N], const float (&period)[N], float seed = 0) {
+  return pnoise(std::to_array(p), std::to_array(period), seed);
+}
+template <std::size_t N>
+std::array<float, N> dnoise(const float (&p)[N], float seed = 0) {
+  return dnoise(std::to_array(p), seed);
+}
 
 }  // namespace pse

@@ -1,6 +1,6 @@
 // The public API: compile a program once, run it on arrays as often as wanted.
 //
-//   auto script = pse::Script::compile("color = Tint * (0.5 + Noise(p))\nTint = [1 0.8 0.5]",
+//   auto script = pse::Script::compile("Tint = [1 0.8 0.5]\ncolor = Tint * (0.5 + Noise(p))",
 //                                      {.inputs = {{"p", 3}}});
 //   if (!script) return fail(script.error());
 //   script->run(1000, {{"p", {px, py, pz}}}, {{"color", {red, green, blue}}});

@@ -1,6 +1,6 @@
 // `pse doc`: what builtins, library functions and the plane's variables are. The texts stand where
-// the things are defined: in the table of builtins, above the functions of library/, and below for
-// the variables.
+// the things are defined: in the table of builtins, above the functions of library/, and in
+// doc_entries.cpp for the rest.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "app/doc_entries.h"
 #include "app/help.h"
 #include "app/session.h"
 #include "app/text_file.h"
@@ -17,62 +18,6 @@
 
 namespace pse::app {
 namespace {
-
-struct Entry {
-  std::string name, signature, text;
-  std::string home;  // "builtin, noise", "library/turbulence.pse", "variable"
-};
-
-// The variables of the image plane; image_plane.h defines them.
-const std::vector<Entry>& variables() {
-  static const std::vector<Entry> all = {
-      {"x", "x",
-       "to the right in the picture's plane: -aspect at its left edge, 0 in the middle, aspect at "
-       "the right",
-       "variable"},
-      {"y", "y", "upward in the picture's plane: -1 at its bottom, 0 in the middle, 1 at the top",
-       "variable"},
-      {"u", "u", "across the picture: 0 at its left edge, 1 at the right", "variable"},
-      {"v", "v", "up the picture: 0 at its bottom, 1 at the top", "variable"},
-      {"point", "point", "the sample's place in space: [x y 0], moved by --xform", "variable"},
-      {"px", "px", "column of the pixel, from 0 at the left; pixel centres are at .5", "variable"},
-      {"py", "py", "row of the pixel, from 0 at the top; pixel centres are at .5", "variable"},
-      {"frame", "frame", "number of the frame", "variable"},
-      {"time", "time", "seconds: frame / fps", "variable"},
-      {"fps", "fps", "frames per second", "variable"},
-      {"width", "width", "pixels of a row of the picture", "variable"},
-      {"height", "height", "pixels of a column of the picture", "variable"},
-      {"aspect", "aspect", "width / height", "variable"},
-      {"pixelsize", "pixelsize", "side of a pixel in the picture's plane: 2 / height", "variable"},
-      {"pixel_freq", "pixel_freq",
-       "the highest frequency that pixels can show, in cycles per unit: 0.5 / pixelsize",
-       "variable"},
-      {"seed", "seed", "the number given with --seed", "variable"},
-      {"prepass", "prepass.near, prepass.far, prepass.step",
-       "where a prepass found matter on the pixel's ray, and what step it looks with; for the marchers",
-       "variable"},
-      {"begin_frame", "if begin_frame ...",
-       "true where a frame begins: the block is computed once per frame", "variable"},
-      {"place", "place", "the surface's place in the world (docs/surfaces.md); `point` is the same "
-       "in the object's own frame", "variable of surfaces"},
-      {"normal", "normal", "the surface's direction, of length 1, on the side of the eye",
-       "variable of surfaces"},
-      {"uv", "uv", "the surface's coordinates, v upward", "variable of surfaces"},
-      {"id", "id", "number of the object, from 1", "variable of surfaces"},
-      {"depth", "depth", "metres in front of the eye's plane", "variable of surfaces"},
-      {"view", "view", "direction to the eye, of length 1", "variable of surfaces"},
-      {"light_direction", "light_direction",
-       "towards the light, of length 1; light2_direction is the second's", "variable of surfaces"},
-      {"light_color", "light_color", "what arrives from the light", "variable of surfaces"},
-      {"trace", "trace(origin, direction)",
-       "what a ray meets first: its parts are .distance .place .point .normal .uv .id .backface",
-       "rays, on surfaces"},
-      {"radiance", "radiance(origin, direction)",
-       "colour and alpha of what a ray meets, shaded by its own program", "rays, on surfaces"},
-      {"visible", "visible(place, other_place)",
-       "1 where nothing stands between two places, else 0", "rays, on surfaces"}};
-  return all;
-}
 
 // The comment lines directly above line `end` of a text, joined to one paragraph.
 std::string comment_above(std::string_view text, std::size_t end) {
@@ -90,23 +35,39 @@ std::string comment_above(std::string_view text, std::size_t end) {
   return comment;
 }
 
-void add_functions(std::string_view text, const std::string& home, std::vector<Entry>& entries) {
+// "name(a, b = 2)" at the start of a text, on one line however it is written.
+std::string signature_at(std::string_view text) {
+  std::string signature;
+  int depth = 0;
+  for (const char letter : text) {
+    if (letter == '(') ++depth;
+    const bool space = letter == ' ' || letter == '\n';
+    if (!space) signature += letter;
+    if (space && !signature.empty() && signature.back() != ' ' && signature.back() != '(')
+      signature += ' ';
+    if (letter == ')' && --depth == 0) break;
+  }
+  if (const std::size_t end = signature.rfind(" )"); end != std::string::npos)
+    signature.erase(end, 1);
+  return signature;
+}
+
+void add_functions(std::string_view text, const std::string& home, std::vector<DocEntry>& entries) {
   constexpr std::string_view word = "function ";
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     std::string_view line = text.substr(at, end - at);
     if (line.starts_with(word)) {
-      line.remove_prefix(word.size());
-      const std::string_view signature = line.substr(0, std::min(line.rfind(')') + 1, line.size()));
-      entries.push_back({std::string(signature.substr(0, signature.find('('))),
-                         std::string(signature), comment_above(text, at), home});
+      const std::string signature = signature_at(text.substr(at + word.size()));
+      entries.push_back(
+          {signature.substr(0, signature.find('(')), signature, comment_above(text, at), home});
     }
     at = end + 1;
   }
 }
 
-std::vector<Entry> all_entries(const Session& session) {
-  std::vector<Entry> entries = variables();
+std::vector<DocEntry> all_entries(const Session& session) {
+  std::vector<DocEntry> entries(told_entries().begin(), told_entries().end());
   for (const Builtin& builtin : builtins()) {
     std::string text(builtin.doc);
     if (text.empty() && !builtin.same_as.empty())
@@ -127,9 +88,9 @@ std::vector<Entry> all_entries(const Session& session) {
   return entries;
 }
 
-std::string overview(const std::vector<Entry>& entries) {
+std::string overview(const std::vector<DocEntry>& entries) {
   std::map<std::string, std::vector<std::string>> homes;
-  for (const Entry& entry : entries) homes[entry.home].push_back(entry.name);
+  for (const DocEntry& entry : entries) homes[entry.home].push_back(entry.name);
   std::string out;
   for (const auto& [home, names] : homes)
     out += fmt::format("{}\n{}\n", home, wrap(fmt::format("{}", fmt::join(names, " ")), 2));
@@ -139,39 +100,39 @@ std::string overview(const std::vector<Entry>& entries) {
 }  // namespace
 
 Exit doc_command(Session& session) {
-  const std::vector<Entry> entries = all_entries(session);
+  const std::vector<DocEntry> entries = all_entries(session);
   const auto& names = session.arguments.positionals;
   const bool json = session.arguments.has("json");
 
   // The entries asked for.
-  std::vector<Entry> chosen;
+  std::vector<DocEntry> chosen;
   for (const std::string& name : names) {
     const std::size_t before = chosen.size();
     std::copy_if(entries.begin(), entries.end(), std::back_inserter(chosen),
-                 [&](const Entry& e) { return e.name == name; });
+                 [&](const DocEntry& e) { return e.name == name; });
     if (chosen.size() > before) continue;
     std::vector<std::string> known;
-    for (const Entry& entry : entries) known.push_back(entry.name);
+    for (const DocEntry& entry : entries) known.push_back(entry.name);
     const std::string near = nearest_name(name, known);
     throw usage_error(
         fmt::format("there is no function or variable `{}`", name),
         near.empty() ? "`pse doc --list` lists them" : fmt::format("did you mean `{}`?", near));
   }
-  const std::vector<Entry>& shown = names.empty() ? entries : chosen;
+  const std::vector<DocEntry>& shown = names.empty() ? entries : chosen;
 
   if (json) {
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
-    for (const Entry& e : shown)
+    for (const DocEntry& e : shown)
       all.push_back(
           {{"name", e.name}, {"signature", e.signature}, {"text", e.text}, {"home", e.home}});
     session.console.print(all.dump(2) + "\n");
   } else if (session.arguments.has("list")) {
-    for (const Entry& e : shown) session.console.print(e.name + "\n");
+    for (const DocEntry& e : shown) session.console.print(e.name + "\n");
   } else if (names.empty()) {
     session.console.print(overview(entries));
   } else {
-    for (const Entry& e : shown)
-      session.console.print(fmt::format("{}  ({})\n{}", e.signature, e.home, wrap(e.text, 4)));
+    for (const DocEntry& e : shown)
+      session.console.print(wrap(fmt::format("{}  ({})", e.signature, e.home), 0) + wrap(e.text, 4));
   }
   return Exit::ok;
 }

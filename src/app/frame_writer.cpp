@@ -14,7 +14,11 @@ namespace {
 constexpr std::int64_t most_snapshot_bytes = std::int64_t{128} << 20;
 
 [[noreturn]] void throw_failure(const image::ImageError& error) {
+  // What is asked of a writer and cannot be done was asked for on the command line.
+  const bool asked = error.kind == image::ErrorKind::unsupported ||
+                     error.kind == image::ErrorKind::bad_request;
   throw Failure(error.kind == image::ErrorKind::not_finite ? Exit::strict
+                : asked                                    ? Exit::usage
                 : error.is_output()                        ? Exit::output
                                                            : Exit::input,
                 error.message);

@@ -469,7 +469,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 7> variables
      "pse/pse.toml is read there after pse.toml here and upward; default ~/.config"},
     {"NO_COLOR", "when set, no colours"},
     {"OCIO", "an OpenColorIO configuration"},
-    {"SOURCE_DATE_EPOCH", "the time to store in files"},
+    {"SOURCE_DATE_EPOCH", "the date of manual pages; no other file holds a time"},
 }};
 
 }  // namespace

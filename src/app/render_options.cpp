@@ -32,11 +32,23 @@ bool take_special(const std::string& name, const std::string& value, Arguments& 
   return false;
 }
 
+// `module.Name`, the knob of an imported file.
+bool is_knob_of_module(const std::string& name) {
+  const std::size_t dot = name.find('.');
+  return dot != std::string::npos && is_variable_name(name.substr(0, dot)) &&
+         is_variable_name(name.substr(dot + 1)) &&
+         std::isupper(static_cast<unsigned char>(name[dot + 1])) != 0;
+}
+
 // Sorts the arguments into program, images and knobs.
 void sort_words(RenderOptions& options, Arguments& arguments) {
   for (const std::string& word : arguments.positionals) {
     const std::size_t equals = word.find('=');
     const std::string name = word.substr(0, equals);
+    if (equals != std::string::npos && is_knob_of_module(name)) {
+      options.knob_words.push_back(word);
+      continue;
+    }
     if (equals == std::string::npos || !is_variable_name(name)) {
       if (options.program.empty())
         options.program = word;

@@ -120,7 +120,7 @@ std::string padded(int frame, int digits) {
 std::expected<std::vector<int>, std::string> parse_frames(std::string_view text) {
   const auto wrong = [&](std::string_view item) {
     return std::unexpected("\"" + std::string(item) +
-                           "\" is no list of frames; write 1-100, 1-100x5 or 1,5,9");
+                           "\" is no list of frames");
   };
   std::vector<int> frames;
   std::set<int> seen;

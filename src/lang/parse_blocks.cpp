@@ -60,6 +60,7 @@ bool Parser::next_line(const Layout& layout, std::uint32_t& tolerated) {
       report("unbalanced-indentation", place,
              "this line is indented by " + std::to_string(column) + ", as no line above it",
              "an indentation of " + columns);
+      misplaced_ = position_ + 1;
     } else if (!failed_) {
       const std::string meant = meant_keyword();
       report("unexpected-indentation", place,

@@ -1,5 +1,7 @@
 // Statements: docs/grammar.md, "Statements".
+#include <algorithm>
 #include <array>
+#include <cctype>
 
 #include "lang/parser_state.h"
 
@@ -104,8 +106,10 @@ StmtPtr Parser::statement(const Layout& layout) {
       return make_statement(begin, ContinueStmt{});
     case kw_else:
     case kw_elif:
-      report("else-without-if", span(peek()), std::string(describe(peek().kind)) + " has no `if`",
-             {}, "begin it in the column of its `if`, right behind the block of the `if`");
+      if (position_ != misplaced_)
+        report("else-without-if", span(peek()),
+               std::string(describe(peek().kind)) + " has no `if`", {},
+               "begin it in the column of its `if`, right behind the block of the `if`");
       return nullptr;
     case left_brace:
       if (!failed_) {
@@ -116,13 +120,28 @@ StmtPtr Parser::statement(const Layout& layout) {
       }
       return nullptr;
     default:
-      return simple_statement();
+      return foreign_statement(layout);
   }
+}
+
+// `def f(x)` and `float t = 1` are reported, and read as what they are meant for.
+StmtPtr Parser::foreign_statement(const Layout& layout) {
+  const bool foreign = report_foreign_word();
+  if (!foreign) return simple_statement();
+  const std::string_view word = text(peek());
+  const auto known = std::ranges::find(foreign_words, word, &Foreign::word);
+  if (known == foreign_words.end() || peek(1).kind != name) return nullptr;
+  if (known->help == "write `function`" && peek(2).kind == left_paren)
+    return function_statement(layout);
+  if (known->help.starts_with("leave it out") && peek(2).kind == assign) {
+    take();
+    return simple_statement();
+  }
+  return nullptr;
 }
 
 // An assignment, a movement of an action, or an expression.
 StmtPtr Parser::simple_statement() {
-  if (report_foreign_word()) return nullptr;
   if (in_action_ && at_movement()) return movement();
 
   const Token& first = peek();
@@ -190,6 +209,13 @@ void Parser::check_knob(const AssignStmt& assign, Span place) {
   const auto* target = std::get_if<NameExpr>(&assign.target->node);
   const bool capitalised = target && target->name[0] >= 'A' && target->name[0] <= 'Z';
   if (capitalised && assign.op == AssignOp::set && blocks_ == 0) return;
+  if (target && !capitalised && assign.op == AssignOp::set && blocks_ == 0) {
+    std::string name = target->name;
+    name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
+    report("metadata-place", assign.target->span,
+           "only a knob has metadata, and a knob is capitalised", {}, "write `" + name + "`");
+    return;
+  }
   report("metadata-place", place, "only a knob has metadata", {},
          "a knob is a capitalised name that is set at top level, as `Radius = 0.4 [[ min = 0 ]]`");
 }
@@ -277,6 +303,7 @@ StmtPtr Parser::for_statement(const Layout& layout) {
     if (at_word("in")) {
       take();
       node.sequence = expression();
+      if (node.sequence && at(dot_dot)) node.sequence = bare_range(std::move(node.sequence));
     } else {
       unexpected("`in`", "write `for i in [1 .. n]`");
     }
@@ -284,6 +311,19 @@ StmtPtr Parser::for_statement(const Layout& layout) {
   if (!node.sequence) skip_head();
   node.body = body(layout, "for", node.sequence != nullptr);
   return make_statement(begin, std::move(node));
+}
+
+// `for i in 1 .. n`: a range without its brackets.
+ExprPtr Parser::bare_range(ExprPtr first) {
+  const std::uint32_t begin = first->span.begin;
+  take();
+  ExprPtr last = expression();
+  if (!last) return nullptr;
+  const Span place = since(begin);
+  report("unexpected-word", place, "a range stands in brackets", {},
+         "write `[" + quote(place) + "]`");
+  const int below = std::max(first->height, last->height);
+  return make(place, RangeExpr{std::move(first), std::move(last), nullptr}, below);
 }
 
 StmtPtr Parser::return_statement() {

@@ -96,6 +96,7 @@ class Parser {
 
   // ---- Statements (parse_statements.cpp) ----
   StmtPtr statement(const Layout& layout);
+  StmtPtr foreign_statement(const Layout& layout);
   StmtPtr simple_statement();
   bool assignment(std::uint32_t begin, ExprPtr target, AssignOp op, StmtPtr& result);
   bool metadata(std::vector<MetaEntry>& entries);
@@ -103,6 +104,7 @@ class Parser {
   StmtPtr if_statement(const Layout& layout);
   StmtPtr while_statement(const Layout& layout);
   StmtPtr for_statement(const Layout& layout);
+  ExprPtr bare_range(ExprPtr first);
   StmtPtr return_statement();
   StmtPtr function_statement(const Layout& layout);
   StmtPtr import_statement();
@@ -144,6 +146,7 @@ class Parser {
   std::size_t nodes_ = 0;
   int level_ = 0;   // of recursion
   int blocks_ = 0;  // open blocks
+  std::size_t misplaced_ = 0;  // the last line whose column was reported: its first word
   bool stopped_ = false;
   bool failed_ = false;  // the statement before was not understood
   bool in_action_ = false;

@@ -20,7 +20,8 @@ void Lowering::bind_arrays(const lang::Block& body) {
 }
 
 void Lowering::add_check(ir::Value condition, const std::string& message, const Span& span) {
-  module_.checks.push_back({span, message});
+  const Blame found = blame("index-range", span, message, {});
+  module_.checks.push_back({found.span, found.message});
   builder_->emit_void(ir::Op::check, {condition}, static_cast<std::int32_t>(module_.checks.size()) - 1);
 }
 

@@ -88,29 +88,29 @@ std::expected<BoundCall, std::string> bind(const Builtin& builtin, const Builtin
     }
   }
   if (next < call.arguments.size()) {
-    return std::unexpected(fmt::format("too many arguments for {}", usage(builtin)));
+    return std::unexpected(fmt::format("too many arguments for `{}`", usage(builtin)));
   }
 
   // By name.
   for (const auto& [name, components] : call.named) {
     const auto found = std::ranges::find(parameters, name, &Parameter::name);
     if (found == parameters.end()) {
-      return std::unexpected(fmt::format("{} has no parameter '{}'", usage(builtin), name));
+      return std::unexpected(fmt::format("`{}` has no parameter `{}`", usage(builtin), name));
     }
     const auto p = static_cast<std::size_t>(found - parameters.begin());
     if (given[p])
-      return std::unexpected(fmt::format("'{}' is given twice to {}", name, builtin.name));
+      return std::unexpected(fmt::format("`{}` is given twice to `{}`", name, builtin.name));
     given[p] = true;
     bound.arguments[p] = components;
   }
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     if (!given[p] && !parameters[p].optional) {
       return std::unexpected(
-          fmt::format("'{}' is missing in the call of {}", parameters[p].name, usage(builtin)));
+          fmt::format("`{}` needs a value for `{}`", usage(builtin), parameters[p].name));
     }
     if (given[p] && bound.arguments[p].empty()) {
       return std::unexpected(
-          fmt::format("'{}' of {} has no components", parameters[p].name, builtin.name));
+          fmt::format("`{}` of `{}` has no components", parameters[p].name, builtin.name));
     }
   }
   return bound;
@@ -125,7 +125,7 @@ std::expected<Components, std::string> emit_elementwise(const BuiltinScope& scop
     if (argument.size() == 1) continue;
     if (length != 1 && argument.size() != length) {
       return std::unexpected(
-          fmt::format("{} takes vectors of one length, and these have {} and {} components",
+          fmt::format("`{}` takes vectors of one length, and these have {} and {} components",
                       bound.name, length, argument.size()));
     }
     length = argument.size();
@@ -158,6 +158,14 @@ std::span<const Builtin> builtins() {
     return all;
   }();
   return list;
+}
+
+std::vector<std::string> parameter_names(const Builtin& builtin) {
+  std::vector<std::string> names;
+  const std::string_view text =
+      builtin.same_as.empty() ? builtin.parameters : find_builtin(builtin.same_as)->parameters;
+  for (const Parameter& parameter : parameters_of(text)) names.emplace_back(parameter.name);
+  return names;
 }
 
 const Builtin* find_builtin(std::string_view name) {

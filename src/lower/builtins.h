@@ -46,6 +46,9 @@ std::span<const Builtin> builtins();
 // The entry of this name; nothing when there is none.
 const Builtin* find_builtin(std::string_view name);
 
+// The names of an entry's parameters, in order.
+std::vector<std::string> parameter_names(const Builtin& builtin);
+
 // One call as the lowering sees it: arguments in order, then those given by name.
 struct BuiltinCall {
   std::string_view name;

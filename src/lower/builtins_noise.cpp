@@ -105,7 +105,7 @@ std::vector<IrFloat> body(Form form, bool periodic, Numbers floats, std::span<co
 std::expected<std::vector<IrFloat>, std::string> position(const BuiltinScope& scope,
                                                           const BoundCall& call) {
   if (call.arguments[0].size() > 4) {
-    return std::unexpected(fmt::format("{} takes a position of 1 to 4 coordinates, and this has {}",
+    return std::unexpected(fmt::format("`{}` takes a position of 1 to 4 coordinates, and this has {}",
                                        call.name, call.arguments[0].size()));
   }
   return scope.numbers(call.arguments[0]);
@@ -122,7 +122,7 @@ std::expected<std::vector<IrFloat>, std::string> call_noise(const BuiltinScope& 
   const std::size_t dimensions = floats->size();
   if (!period.empty() && period.size() != 1 && period.size() != dimensions) {
     return std::unexpected(
-        fmt::format("the period of {} is one number or one for each of the {} coordinates",
+        fmt::format("the period of `{}` is one number or one for each of the {} coordinates",
                     call.name, dimensions));
   }
   for (std::size_t axis = 0; axis < dimensions && !period.empty(); ++axis) {
@@ -130,7 +130,7 @@ std::expected<std::vector<IrFloat>, std::string> call_noise(const BuiltinScope& 
   }
   std::vector<IrInt> ints;
   if (seed.size() > 1)
-    return std::unexpected(fmt::format("the seed of {} is one number", call.name));
+    return std::unexpected(fmt::format("the seed of `{}` is one number", call.name));
   if (!seed.empty()) ints.push_back(num::key_of_seed(scope.number(seed[0])));
 
   // The function's name tells all that it is made for.
@@ -157,7 +157,7 @@ Result emit(const BuiltinScope& scope, const BoundCall& call) {
 template <class Kind, Form form>
 Result emit_three(const BuiltinScope& scope, const BoundCall& call) {
   if (call.arguments[0].size() != 3) {
-    return std::unexpected(fmt::format("{} takes a position of 3 coordinates, and this has {}",
+    return std::unexpected(fmt::format("`{}` takes a position of 3 coordinates, and this has {}",
                                        call.name, call.arguments[0].size()));
   }
   const auto result = call_noise<Kind>(scope, call, form, {}, {});

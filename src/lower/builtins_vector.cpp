@@ -18,7 +18,7 @@ IrFloat inner_product(std::span<const IrFloat> a, std::span<const IrFloat> b) {
 Result dot(const BuiltinScope& scope, const BoundCall& call) {
   if (call.arguments[0].size() != call.arguments[1].size()) {
     return std::unexpected(
-        fmt::format("dot takes two vectors of one length, and these have {} and {} components",
+        fmt::format("`dot` takes two vectors of one length, and these have {} and {} components",
                     call.arguments[0].size(), call.arguments[1].size()));
   }
   return scope.values(std::array{
@@ -27,7 +27,7 @@ Result dot(const BuiltinScope& scope, const BoundCall& call) {
 
 Result cross(const BuiltinScope& scope, const BoundCall& call) {
   if (call.arguments[0].size() != 3 || call.arguments[1].size() != 3) {
-    return std::unexpected("cross takes two vectors of three components");
+    return std::unexpected("`cross` takes two vectors of three components");
   }
   const auto a = scope.numbers(call.arguments[0]);
   const auto b = scope.numbers(call.arguments[1]);

@@ -43,8 +43,9 @@ Typed Lowering::lower_call(const CallExpr& call, const Span& span) {
     }
   }
   if (!function) {
+    const std::string foreign = foreign_function(name);
     error("unknown-function", call.callee->span, "there is no function `" + name + "`",
-          did_you_mean(name, callable_names()));
+          foreign.empty() ? did_you_mean(name, callable_names()) : foreign);
     for (const Argument& argument : call.arguments) lower(*argument.value);
     return {};
   }
@@ -55,14 +56,19 @@ Typed Lowering::lower_call(const CallExpr& call, const Span& span) {
     arguments.push_back({argument.name, argument.value->span, lower(*argument.value)});
     failed = failed || arguments.back().value.is_error();
     if (arguments.back().value.kind == Kind::nothing) {
-      error("no-value", argument.value->span, "this argument has no value");
+      const auto* inner = std::get_if<CallExpr>(&argument.value->node);
+      const auto* callee = inner ? std::get_if<NameExpr>(&inner->callee->node) : nullptr;
+      error("no-value", argument.value->span,
+            callee ? "`" + callee->name + "` returns no value" : "this argument has no value");
       failed = true;
     }
   }
   if (failed) return {};
-  // A function that was passed in takes of what it is called with as much as it asks for, so that a
-  // marcher may offer point, normal and eye to a colour that needs only the point.
-  if (passed && function->definition) {
+  // A function that was passed to the library, or into another file, takes of what it is called with
+  // there as much as it asks for, so that a marcher may offer point, normal and eye to a colour that
+  // needs only the point.
+  const bool offered = function->scope != call_->scope || library_texts_.contains(call_->scope->file);
+  if (passed && function->definition && offered) {
     std::size_t room = function->definition->parameters.size();
     std::erase_if(arguments, [&](const CallArgument& argument) {
       return argument.name.empty() && (room == 0 || room-- == 0);
@@ -111,6 +117,7 @@ Typed Lowering::call_user(const FunctionRef& function, std::vector<CallArgument>
   inner.body = &definition.body;
   inner.caller = call_;
   inner.call_span = span;
+  inner.arguments = &arguments;
   inner.functions = std::move(functions);
   std::size_t place = 0;
   for (CallArgument& argument : arguments) {
@@ -137,7 +144,9 @@ Typed Lowering::call_user(const FunctionRef& function, std::vector<CallArgument>
       }
     }
     if (!inner.variables.emplace(parameter, argument.value).second) {
-      error("argument-twice", argument.span, "parameter `" + parameter + "` is given twice");
+      // Two parameters of one name have been reported.
+      if (std::ranges::count(definition.parameters, parameter, &Parameter::name) == 1)
+        error("argument-twice", argument.span, "parameter `" + parameter + "` is given twice");
       return {};
     }
   }
@@ -190,6 +199,15 @@ Typed Lowering::call_builtin(const std::string& name, std::vector<CallArgument>&
       call.arguments.push_back(argument.value.parts);
     else
       call.named.emplace_back(argument.name, argument.value.parts);
+  }
+  if (const Builtin* builtin = find_builtin(name)) {
+    const std::vector<std::string> parameters = parameter_names(*builtin);
+    for (const CallArgument& argument : arguments)
+      if (!argument.name.empty() && std::ranges::find(parameters, argument.name) == parameters.end()) {
+        error("unknown-argument", argument.span, "`" + name + "` has no parameter `" + argument.name + "`",
+              did_you_mean(argument.name, parameters));
+        return {};
+      }
   }
   const auto results = builtins_->emit(*builder_, call);
   if (!results) {

@@ -19,6 +19,15 @@ constexpr std::pair<const char*, float> constants[] = {
     {"NAN", std::numeric_limits<float>::quiet_NaN()},
 };
 
+// Colours by name, linear Rec. 709.
+constexpr std::pair<const char*, std::array<float, 3>> colours[] = {
+    {"white", {1, 1, 1}},   {"black", {0, 0, 0}},
+    {"red", {1, 0, 0}},     {"green", {0, 1, 0}},
+    {"blue", {0, 0, 1}},    {"cyan", {0, 1, 1}},
+    {"magenta", {1, 0, 1}}, {"yellow", {1, 1, 0}},
+    {"gray", {0.18f, 0.18f, 0.18f}}, {"grey", {0.18f, 0.18f, 0.18f}},
+};
+
 std::optional<float> apply(BinaryOp op, float a, float b) {
   switch (op) {
     case BinaryOp::add: return a + b;
@@ -55,6 +64,18 @@ std::vector<std::string> named_constants() {
   return names;
 }
 
+std::optional<std::array<float, 3>> named_colour(const std::string& name) {
+  for (const auto& [known, rgb] : colours)
+    if (name == known) return rgb;
+  return {};
+}
+
+std::vector<std::string> named_colours() {
+  std::vector<std::string> names;
+  for (const auto& [known, rgb] : colours) names.emplace_back(known);
+  return names;
+}
+
 std::optional<ConstantValue> constant_value(const Expr& expr) {
   if (const auto* number = std::get_if<NumberExpr>(&expr.node))
     return ConstantValue{.numbers = {static_cast<float>(number->value)}, .text = {}};
@@ -64,6 +85,8 @@ std::optional<ConstantValue> constant_value(const Expr& expr) {
     return ConstantValue{.numbers = {}, .text = text->value, .is_text = true};
   if (const auto* name = std::get_if<NameExpr>(&expr.node)) {
     if (const auto value = named_constant(name->name)) return ConstantValue{.numbers = {*value}, .text = {}};
+    if (const auto rgb = named_colour(name->name))
+      return ConstantValue{.numbers = {rgb->begin(), rgb->end()}, .text = {}};
     return {};
   }
   if (const auto* vector = std::get_if<VectorExpr>(&expr.node)) return vector_of(vector->elements);

@@ -279,7 +279,14 @@ Typed Lowering::lower_member(const MemberExpr& member, const Span& span) {
     }
     if (parts.size() == member.name.size()) return parts.size() == 1 ? number(parts.front()) : vector(parts);
   }
-  error("unknown-component", member.name_span, describe(base) + " has no component `" + member.name + "`",
+  // The first letter that names nothing is the one to look at.
+  std::string wrong = member.name;
+  for (const std::string_view letters : {"xyzw", "rgba", "uv"}) {
+    if (letters.find(member.name.front()) == std::string_view::npos) continue;
+    const auto outside = std::ranges::find_if(member.name, [&](char letter) { return letters.find(letter) >= base.parts.size(); });
+    if (outside != member.name.end()) wrong = *outside;
+  }
+  error("unknown-component", member.name_span, describe(base) + " has no component `" + wrong + "`",
         "components are named x y z w, r g b a or u v");
   return {};
 }

@@ -1,4 +1,6 @@
 // The top level: definitions first, then knobs, then the statements in order; at the end the outputs.
+#include <algorithm>
+
 #include "lower/lowering.h"
 
 #include "lang/parser.h"
@@ -18,13 +20,41 @@ Lowering::Lowering(SourceMap& sources, const LowerHost& host, const LowerOptions
 
 // ---- Reports and limits -----------------------------------------------------------------------------------------
 
-void Lowering::error(const char* code, const Span& span, std::string message, std::string suggestion) {
-  // In another file's function, the program's own call is the place to look at next.
+// A function of the library is right: what it cannot do is the fault of what it was called with, and
+// the call is the place. In a function of another module, the program's own call is named beside it.
+Blame Lowering::blame(const char* code, const Span& span, std::string message,
+                      std::string suggestion) const {
+  const auto in_library = [&](const Span& place) { return library_texts_.contains(place.file); };
   const Call* call = span.valid() && span.file != main_.file ? call_ : nullptr;
+  if (call && in_library(span)) {
+    while (call && in_library(call->call_span)) call = call->caller;
+    if (!call || !call->call_span.valid() || !call->definition)
+      return {span, std::move(message), std::move(suggestion)};
+    std::string head = "`" + call->definition->name + "` cannot be called here: ";
+    const bool by_shape = code != std::string_view("unknown-name") && code != std::string_view("too-large");
+    if (by_shape && call->arguments && !call->arguments->empty()) {
+      head = "`" + call->definition->name + "` cannot be called with ";
+      for (std::size_t i = 0; i < call->arguments->size(); ++i)
+        head += (i == 0 ? "" : i + 1 < call->arguments->size() ? ", " : " and ") +
+                describe((*call->arguments)[i].value);
+      head += ": ";
+    }
+    suggestion += (suggestion.empty() ? "see " : "; see ") + sources_.describe(span);
+    return {call->call_span, head + message, std::move(suggestion)};
+  }
   while (call && call->call_span.file != main_.file) call = call->caller;
   if (call && call->call_span.valid())
     suggestion += (suggestion.empty() ? "called from " : "; called from ") + sources_.describe(call->call_span);
-  diagnostics_->error(code, span, std::move(message), std::move(suggestion));
+  return {span, std::move(message), std::move(suggestion)};
+}
+
+void Lowering::error(const char* code, const Span& span, std::string message, std::string suggestion) {
+  Blame found = blame(code, span, std::move(message), std::move(suggestion));
+  // One wrong call makes one error, however often the library stumbles over it.
+  if (!(found.span == span))
+    for (const Diagnostic& earlier : diagnostics_->all())
+      if (earlier.severity == Severity::error && earlier.span == found.span) return;
+  diagnostics_->error(code, found.span, std::move(found.message), std::move(found.suggestion));
 }
 
 void Lowering::warning(const char* code, const Span& span, std::string message, std::string suggestion) {
@@ -85,14 +115,33 @@ ModuleScope* Lowering::adopt(FileId file, const std::string& name) {
   return result;
 }
 
+ModuleScope* Lowering::adopt_library(const LibraryFile& file, const std::string& name) {
+  const FileId text =
+      sources_.add("library/" + std::string(file.name) + ".pse", std::string(file.text));
+  library_texts_.insert(text);
+  return adopt(text, name);
+}
+
 ModuleScope* Lowering::load_module(const std::string& name, const Span& span) {
   if (const auto found = modules_.find(name); found != modules_.end()) return found->second.get();
+  // A file of the user's comes first, so that a new file of the library changes no program.
+  const auto library = std::ranges::find(library_files(), name, &LibraryFile::name);
+  const bool in_library = library != library_files().end();
   if (host_.find_module)
-    if (const auto file = host_.find_module(sources_, name)) return adopt(*file, name);
-  for (const LibraryFile& file : library_files())
-    if (file.name == name) return adopt(sources_.add("library/" + name + ".pse", std::string(file.text)), name);
+    if (const auto file = host_.find_module(sources_, name)) {
+      if (in_library)
+        warning("hides-library", span,
+                "this is " + sources_.file(*file).name + ", not the library's module `" + name + "`",
+                "rename the file to import the library's; its functions are found without an import");
+      imported_.push_back(adopt(*file, name));
+      return imported_.back();
+    }
+  if (in_library) return adopt_library(*library, name);
+  std::vector<std::string> names;
+  for (const LibraryFile& file : library_files()) names.emplace_back(file.name);
+  const std::string near = did_you_mean(name, names);
   error("unknown-module", span, "there is no module `" + name + "`",
-        "a module is a file `" + name + ".pse` beside the program or on PSE_PATH");
+        !near.empty() ? near : "a module is a file `" + name + ".pse` beside the program or on PSE_PATH");
   modules_[name] = nullptr;
   return nullptr;
 }
@@ -108,7 +157,7 @@ ModuleScope* Lowering::library_module_of(const std::string& name) {
   const LibraryFile& file = files[static_cast<std::size_t>(found->second)];
   const std::string key = "library/" + std::string(file.name);
   if (const auto loaded = modules_.find(key); loaded != modules_.end()) return loaded->second.get();
-  return adopt(sources_.add(key + ".pse", std::string(file.text)), key);
+  return adopt_library(file, key);
 }
 
 // ---- The stream and the knobs -----------------------------------------------------------------------------------
@@ -126,6 +175,10 @@ std::int32_t Lowering::input_index(const std::string& name, ir::Rate rate) {
 }
 
 Typed Lowering::read_stream(const StreamName& name) {
+  if (frame_blocks_ > 0 && name.rate == ir::Rate::sample)
+    warning("varies-in-frame", builder_->span(),
+            "`" + name.name + "` differs from sample to sample, so this is not computed once per frame",
+            "move it out of `if begin_frame`");
   bool read = false;
   for (const std::string& known_name : reads_) read = read || known_name == name.name;
   if (!read) reads_.push_back(name.name);
@@ -136,20 +189,31 @@ Typed Lowering::read_stream(const StreamName& name) {
   return vector(std::move(parts));
 }
 
-Typed Lowering::read_knob(const std::string& name) {
-  const Knob& knob = knobs_[knob_of_.at(name)];
+Typed Lowering::read_knob(std::size_t index) {
+  const Knob& knob = knobs_[index];
   if (knob.is_text()) return {.kind = Kind::text, .parts = {}, .text = knob.text, .function = {}};
   std::vector<ir::Value> parts;
   for (std::size_t c = 0; c < knob.value.size(); ++c) {
-    const std::string input = knob.value.size() == 1 ? name : name + "." + std::to_string(c);
+    const std::string input = knob.value.size() == 1 ? knob.name : knob.name + "." + std::to_string(c);
     parts.push_back(emit(ir::Op::input, {}, input_index(input, ir::Rate::frame)));
   }
   if (knob.is_boolean) return truth(emit(ir::Op::fne, {parts.front(), constant(0)}));
   return parts.size() == 1 ? number(parts.front()) : vector(std::move(parts));
 }
 
-void Lowering::declare_knob(const AssignStmt& assign, const std::string& name, const Span& span) {
-  if (knob_of_.contains(name)) {
+void Lowering::declare_knobs(const Program& program, ModuleScope& scope) {
+  for (const StmtPtr& statement : program.body) {
+    const auto* assign = statement ? std::get_if<AssignStmt>(&statement->node) : nullptr;
+    const auto* name = assign ? std::get_if<NameExpr>(&assign->target->node) : nullptr;
+    if (!name) continue;
+    if (assign->op == AssignOp::set && name->name.front() >= 'A' && name->name.front() <= 'Z')
+      declare_knob(*assign, name->name, statement->span, scope);
+  }
+}
+
+void Lowering::declare_knob(const AssignStmt& assign, const std::string& name, const Span& span,
+                            ModuleScope& scope) {
+  if (scope.knobs.contains(name)) {
     if (!assign.meta.empty())
       error("knob-twice", span, "knob `" + name + "` is declared twice");
     return;
@@ -161,17 +225,21 @@ void Lowering::declare_knob(const AssignStmt& assign, const std::string& name, c
             "write a number, a vector of numbers or a text");
     return;
   }
+  // Of what a module sets twice, the last counts.
+  if (&scope != &main_ && scope.constants[name] != assign.value.get()) return;
   Knob knob;
   knob.name = name;
+  for (const Knob& other : knobs_)
+    if (other.name == name) knob.name = scope.name + "." + name;
   knob.span = span;
   knob.is_boolean = value->is_boolean;
   knob.value = value->numbers;
   knob.text = value->text;
   if (value->is_text)
     for (const auto& [overridden, text] : options_.text_knobs)
-      if (overridden == name) knob.text = text;
+      if (overridden == knob.name) knob.text = text;
   read_meta(knob, assign);
-  knob_of_[name] = knobs_.size();
+  scope.knobs[name] = knobs_.size();
   knobs_.push_back(std::move(knob));
 }
 
@@ -222,6 +290,11 @@ void Lowering::make_outputs(Lowered& result) {
     const auto found = variables().find(name);
     if (found == variables().end()) continue;
     const Typed value = to_number(found->second);
+    const bool is_colour = value.kind == Kind::number || (value.kind == Kind::vector && value.rows <= 4);
+    const bool fits = name == "color" ? is_colour : name != "alpha" || value.kind == Kind::number;
+    if (!fits && !value.is_error())
+      error("output-kind", set_at_top_[name], "`" + name + "` is " + describe(value) + ", which makes no picture",
+            value.kind == Kind::function ? "call the function" : "");
     if (!value.is_numeric()) continue;
     const bool wanted = options_.outputs.empty() ||
                         std::find(options_.outputs.begin(), options_.outputs.end(), name) != options_.outputs.end();
@@ -248,15 +321,9 @@ Lowered Lowering::run(const Program& program) {
   library_module_of("");
   try {
     read_definitions(program, main_);
-    for (const StmtPtr& statement : program.body) {
-      const auto* assign = statement ? std::get_if<AssignStmt>(&statement->node) : nullptr;
-      const auto* name = assign ? std::get_if<NameExpr>(&assign->target->node) : nullptr;
-      if (!name) continue;
-      if (assign->op == AssignOp::set && name->name.front() >= 'A' && name->name.front() <= 'Z')
-        declare_knob(*assign, name->name, statement->span);
-      else if (!assign->meta.empty())
-        error("knob-name", assign->target->span, "a knob's name begins with a capital letter");
-    }
+    declare_knobs(program, main_);
+    for (ModuleScope* module : imported_) declare_knobs(*module->program, *module);
+    collect_assigned(program.body, ever_set_at_top_);
     bind_arrays(program.body);
     lower_block(program.body);
     make_outputs(result);
@@ -280,7 +347,23 @@ namespace pse {
 
 Lowered lower_program(SourceMap& sources, const lang::Program& program, const LowerHost& host, const LowerOptions& options,
               Diagnostics& diagnostics) {
-  return lower::Lowering(sources, host, options, diagnostics).run(program);
+  Diagnostics found;
+  Lowered lowered = lower::Lowering(sources, host, options, found).run(program);
+
+  // Of the errors that one call of the library makes, loops may have kept several.
+  std::vector<Span> calls;
+  for (const Diagnostic& diagnostic : found.all()) {
+    if (diagnostic.severity == Severity::error && diagnostic.suggestion.contains("see library/")) {
+      if (std::ranges::find(calls, diagnostic.span) != calls.end()) continue;
+      calls.push_back(diagnostic.span);
+    }
+    diagnostics.add(diagnostic);
+  }
+  // Errors beyond those kept are counted; where there is room again, a repetition does no harm.
+  const auto kept = std::ranges::count(found.all(), Severity::error, &Diagnostic::severity);
+  for (auto more = static_cast<std::ptrdiff_t>(found.error_count()) - kept; more > 0; --more)
+    diagnostics.add(*std::ranges::find(found.all(), Severity::error, &Diagnostic::severity));
+  return lowered;
 }
 
 void add_later_errors(SourceMap& sources, const lang::Program& program, const LowerHost& host,
@@ -289,6 +372,7 @@ void add_later_errors(SourceMap& sources, const lang::Program& program, const Lo
   lower_program(sources, program, host, options, later);
   for (const Diagnostic& diagnostic : later.all()) {
     const bool unknown = diagnostic.code == "unknown-name" || diagnostic.code == "unknown-function";
+    if (diagnostic.code == "output-kind") continue;
     if (diagnostic.severity == Severity::error && (!unknown || diagnostic.suggestion.starts_with("did you mean")))
       diagnostics.add(diagnostic);
   }

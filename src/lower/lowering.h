@@ -12,6 +12,7 @@
 
 #include "ir/builder.h"
 #include "lower/builtins.h"
+#include "lower/library.h"
 #include "lower/lower.h"
 #include "lower/scan.h"
 #include "lower/value.h"
@@ -20,6 +21,12 @@ namespace pse::lower {
 
 // Thrown inside the lowering when a program outgrows its limits; never leaves lower().
 struct TooLarge {};
+
+struct CallArgument {
+  std::string name;  // empty: positional
+  Span span;
+  Typed value;
+};
 
 // One function call being lowered, or the top level.
 struct Call {
@@ -30,12 +37,14 @@ struct Call {
   std::vector<Typed> functions;  // the functions among the arguments
   Call* caller = nullptr;
   Span call_span;
+  const std::vector<CallArgument>* arguments = nullptr;  // as they were given
 };
 
-struct CallArgument {
-  std::string name;  // empty: positional
+// Where an error is to be looked for and how it is told.
+struct Blame {
   Span span;
-  Typed value;
+  std::string message;
+  std::string suggestion;
 };
 
 class Lowering {
@@ -49,12 +58,15 @@ class Lowering {
   ModuleScope* load_module(const std::string& name, const Span& span);
   ModuleScope* library_module_of(const std::string& name);
   ModuleScope* adopt(FileId file, const std::string& name);
-  void declare_knob(const lang::AssignStmt& assign, const std::string& name, const Span& span);
+  ModuleScope* adopt_library(const LibraryFile& file, const std::string& name);
+  void declare_knobs(const lang::Program& program, ModuleScope& scope);
+  void declare_knob(const lang::AssignStmt& assign, const std::string& name, const Span& span,
+                    ModuleScope& scope);
   void read_meta(Knob& knob, const lang::AssignStmt& assign);
   void make_outputs(Lowered& result);
   const StreamName* stream_name(const std::string& name) const;
   Typed read_stream(const StreamName& name);
-  Typed read_knob(const std::string& name);
+  Typed read_knob(std::size_t index);
   std::int32_t input_index(const std::string& name, ir::Rate rate);
 
   // names.cpp
@@ -63,6 +75,8 @@ class Lowering {
   Typed lower_module_constant(ModuleScope* scope, const std::string& name, const Span& span, bool& found);
   std::vector<std::string> visible_names() const;
   std::vector<std::string> callable_names() const;
+  static std::string foreign_function(const std::string& name);
+  static std::string source_of(const std::string& name);
   std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates) const;
 
   // expressions.cpp
@@ -133,6 +147,7 @@ class Lowering {
   void lower_if(const lang::IfStmt& statement, const Span& span, std::size_t branch,
                 const std::function<void()>& rest, bool rest_in_fallthrough);
   void lower_assign(const lang::AssignStmt& assign, const Span& span);
+  void warn_of_constant(const std::string& name, const Span& span);
   void assign_name(const std::string& name, Typed value, const Span& span);
   void assign_index(const lang::AssignStmt& assign, const lang::IndexExpr& index, const Span& span);
   void assign_member(const lang::AssignStmt& assign, const lang::MemberExpr& member, const Span& span);
@@ -157,6 +172,7 @@ class Lowering {
   void counted_loop(const lang::ForStmt& statement, ir::Value count, const std::function<Typed(ir::Value)>& element,
                     const Span& span);
 
+  Blame blame(const char* code, const Span& span, std::string message, std::string suggestion) const;
   void error(const char* code, const Span& span, std::string message, std::string suggestion = {});
   void warning(const char* code, const Span& span, std::string message, std::string suggestion = {});
   Variables& variables() { return call_->variables; }
@@ -177,18 +193,21 @@ class Lowering {
 
   ModuleScope main_;
   std::map<std::string, std::unique_ptr<ModuleScope>> modules_;  // imported, by name; null while loading or missing
+  std::vector<ModuleScope*> imported_;                          // in the order of their imports
   std::map<std::string, int> library_index_;                    // function -> library file
+  std::set<FileId> library_texts_;
   std::vector<Knob> knobs_;
-  std::map<std::string, std::size_t> knob_of_;
   std::map<std::string, std::int32_t> inputs_;
   std::vector<ir::CallRange> ranges_;  // where calls were written
   std::unordered_map<const lang::FunctionStmt*, std::uint32_t> callees_;  // numbers for `ranges_`
   std::vector<std::string> reads_;
+  std::set<std::string> ever_set_at_top_;   // all names set there, also further down
   std::map<std::string, Span> set_at_top_;  // outputs in the making: name -> last place
   std::vector<std::string> output_order_;
   Call top_;
   Call* call_ = nullptr;
   int loop_attempts_ = 0;
+  int frame_blocks_ = 0;  // `if begin_frame` around here
   int depth_ = 0;
   int loop_depth_ = 0;
 };

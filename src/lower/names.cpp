@@ -7,39 +7,31 @@ namespace pse::lower {
 
 using namespace lang;
 
-namespace {
-
-// Colours by name, linear Rec. 709.
-struct NamedColour {
-  const char* name;
-  float rgb[3];
-};
-constexpr NamedColour colours[] = {
-    {"white", {1, 1, 1}}, {"black", {0, 0, 0}},  {"red", {1, 0, 0}},     {"green", {0, 1, 0}},
-    {"blue", {0, 0, 1}},  {"cyan", {0, 1, 1}},   {"magenta", {1, 0, 1}}, {"yellow", {1, 1, 0}},
-    {"gray", {0.18f, 0.18f, 0.18f}}, {"grey", {0.18f, 0.18f, 0.18f}},
-};
-
-}  // namespace
-
 Typed Lowering::lower_name(const std::string& name, const Span& span) {
   // The call's own variables, then the program's.
   if (const auto found = call_->variables.find(name); found != call_->variables.end()) return found->second;
   if (call_ != &top_ && call_->scope == &main_)
     if (const auto found = top_.variables.find(name); found != top_.variables.end()) return found->second;
 
+  // A file's own function is meant where the stream happens to bring something of its name.
+  if (const auto own = call_->scope->functions.find(name); own != call_->scope->functions.end())
+    return {.kind = Kind::function, .parts = {}, .text = {}, .function = {own->second, call_->scope, {}}};
   if (const StreamName* stream = stream_name(name)) return read_stream(*stream);
   bool found = false;
   if (const Typed value = lower_module_constant(call_->scope, name, span, found); found) return value;
   if (const auto value = named_constant(name)) return number(*value);
-  for (const NamedColour& colour : colours)
-    if (name == colour.name) return vector({constant(colour.rgb[0]), constant(colour.rgb[1]), constant(colour.rgb[2])});
+  if (const auto rgb = named_colour(name))
+    return vector({constant((*rgb)[0]), constant((*rgb)[1]), constant((*rgb)[2])});
   if (name == "begin_frame") return truth(builder_->const_bool(true));
   if (const auto function = find_function(name, call_->scope))
     return {.kind = Kind::function, .parts = {}, .text = {}, .function = *function};
 
-  std::string hint = did_you_mean(name, visible_names());
-  if (hint.empty() && set_at_top_.contains(name)) hint = "it is set further down; set it before it is read";
+  std::string hint;
+  for (const StreamName& brought : options_.stream)
+    if (hint.empty() && brought.name.ends_with("." + name)) hint = "an image brings `" + brought.name + "`";
+  if (hint.empty()) hint = source_of(name);
+  if (hint.empty() && ever_set_at_top_.contains(name)) hint = "it is set further down; set it before it is read";
+  if (hint.empty()) hint = did_you_mean(name, visible_names());
   if (hint.empty()) {
     std::string names;
     for (const StreamName& brought : options_.stream) {
@@ -82,6 +74,7 @@ Typed Lowering::lower_module_constant(ModuleScope* scope, const std::string& nam
   }
   if (!value) return {};
   found = true;
+  if (const auto knob = home->knobs.find(name); knob != home->knobs.end()) return read_knob(knob->second);
 
   // A module's constants are computed where they are read, in the module's own scope.
   for (const Call* call = call_; call; call = call->caller)
@@ -112,7 +105,7 @@ std::vector<std::string> Lowering::visible_names() const {
   for (const auto& [name, value] : top_.variables)
     if (name.front() != '%') names.push_back(name);
   for (const StreamName& stream : options_.stream) names.push_back(stream.name);
-  for (const NamedColour& colour : colours) names.emplace_back(colour.name);
+  for (const std::string& name : named_colours()) names.push_back(name);
   for (const std::string& name : callable_names()) names.push_back(name);
   return names;
 }
@@ -126,6 +119,41 @@ std::vector<std::string> Lowering::callable_names() const {
   for (const ModuleScope* import : call_->scope->open_imports)
     for (const auto& [name, function] : import->functions) names.push_back(name);
   return names;
+}
+
+// What functions of other languages are called here.
+std::string Lowering::foreign_function(const std::string& name) {
+  constexpr std::pair<const char*, const char*> foreign[] = {
+      {"vec2", "write a vector as `[a b]`"},    {"vec3", "write a vector as `[a b c]`"},
+      {"vec4", "write a vector as `[a b c d]`"}, {"float2", "write a vector as `[a b]`"},
+      {"float3", "write a vector as `[a b c]`"}, {"float4", "write a vector as `[a b c d]`"},
+      {"rgb", "write a colour as `[r g b]`"},    {"rgba", "write a colour as `[r g b a]`"},
+      {"vector", "write a vector as `[a b c]`"}, {"fabs", "write `abs`"},
+      {"mod", "write `a % b`"},                  {"fmod", "write `a % b`"},
+      {"frac", "write `fract`"},                 {"fit", "write `remap(t, a0, a1, b0, b1)`"},
+      {"inversesqrt", "write `1 / sqrt(x)`"},    {"rsqrt", "write `1 / sqrt(x)`"},
+      {"rand", "write `hash(...)`"},             {"random", "write `hash(...)`"},
+      {"texture2D", "write `texture(file, u, v)`"}, {"float", "leave it out: all numbers are floats"},
+      {"int", "write `floor` or `trunc`"},       {"mag", "write `norm` or `length`"},
+      {"sqr", "write `x ^ 2`"},                  {"len", "write `count`"},
+      {"size", "write `count`"},                 {"print", "set a name: it becomes a layer of the picture"},
+      {"printf", "set a name: it becomes a layer of the picture"},
+  };
+  for (const auto& [theirs, ours] : foreign)
+    if (name == theirs) return ours;
+  return {};
+}
+
+// Which source of samples brings a name that this one lacks.
+std::string Lowering::source_of(const std::string& name) {
+  for (const char* of_surfaces : {"normal", "place", "uv", "id", "depth", "view", "hit", "backface", "flat_normal",
+                                  "light_direction", "light_color"})
+    if (name == of_surfaces)
+      return "visible surfaces bring `" + name + "`: render with --on sphere, or a scene";
+  for (const char* of_images : {"color", "alpha", "Z"})
+    if (name == of_images)
+      return "an image without a name brings `" + name + "`: pse render PROGRAM IMAGE -o FILE";
+  return {};
 }
 
 std::string Lowering::did_you_mean(const std::string& name, const std::vector<std::string>& candidates) const {

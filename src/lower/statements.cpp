@@ -1,4 +1,5 @@
 // Statements: assignment, branches, early exits.
+#include "lower/constant.h"
 #include "lower/lowering.h"
 
 namespace pse::lower {
@@ -71,17 +72,7 @@ void Lowering::lower_statement(const Stmt& statement) {
       return error("not-in-loop", statement.span, breaks ? "`break` outside a loop" : "`continue` outside a loop");
     return set_flag(breaks ? "%broke" : "%continued");
   }
-  if (const auto* s = std::get_if<FunctionStmt>(&statement.node)) {
-    if (call_ != &top_ || !main_.functions.contains(s->name) || main_.functions[s->name] != s)
-      error("nested-function", s->name_span, "function `" + s->name + "` is defined inside another block",
-            "define functions at the outermost level");
-    return;
-  }
-  if (std::holds_alternative<ImportStmt>(statement.node)) {
-    if (call_ != &top_) error("nested-import", statement.span, "`import` belongs at the outermost level");
-    return;
-  }
-  // Actions describe movement; they are kept in the tree and have no effect on a picture.
+  // Functions and imports were read before; the parser keeps them at the outermost level. Actions describe movement; they are kept in the tree and have no effect on a picture.
 }
 
 void Lowering::lower_if(const IfStmt& statement, const Span& span, std::size_t index,
@@ -96,8 +87,13 @@ void Lowering::lower_if(const IfStmt& statement, const Span& span, std::size_t i
 
   // `if begin_frame` is the frame rate made visible: the frame has always begun where frame-rate code runs.
   if (const auto* name = std::get_if<NameExpr>(&current.condition->node);
-      name && name->name == "begin_frame" && !variables().contains(name->name))
-    return body();
+      name && name->name == "begin_frame" && !variables().contains(name->name)) {
+    ++frame_blocks_;
+    lower_block(current.body);
+    --frame_blocks_;
+    if (rest_in_fallthrough && !always_exits(current.body)) rest();
+    return;
+  }
 
   const Typed condition = to_truth(lower(*current.condition), current.condition->span);
   if (condition.is_error()) {
@@ -151,9 +147,10 @@ void Lowering::lower_assign(const AssignStmt& assign, const Span& span) {
   if (const auto* name = std::get_if<NameExpr>(&assign.target->node)) {
     // A knob was declared before lowering began: its value comes from outside.
     if (call_ == &top_ && assign.op == AssignOp::set && is_capitalised(name->name)) {
-      const auto knob = knob_of_.find(name->name);
-      if (knob != knob_of_.end() && knobs_[knob->second].span == span) {
-        variables()[name->name] = read_knob(name->name);
+      const auto knob = main_.knobs.find(name->name);
+      if (knob != main_.knobs.end() && knobs_[knob->second].span == span) {
+        variables()[name->name] = read_knob(knob->second);
+        warn_of_constant(name->name, span);
         return;
       }
     }
@@ -169,6 +166,12 @@ void Lowering::lower_assign(const AssignStmt& assign, const Span& span) {
   error("bad-target", assign.target->span, "this cannot be assigned to", "assign to a name, `v[i]` or `v.x`");
 }
 
+void Lowering::warn_of_constant(const std::string& name, const Span& span) {
+  if (named_constant(name))
+    warning("hides-constant", span, "`" + name + "` is a constant of the language, and this hides it",
+            "choose another name");
+}
+
 void Lowering::assign_name(const std::string& name, Typed value, const Span& span) {
   if (value.kind == Kind::nothing) {
     error("no-value", span, "this gives `" + name + "` no value", "the function called returns nothing");
@@ -180,6 +183,7 @@ void Lowering::assign_name(const std::string& name, Typed value, const Span& spa
               "choose another name if the stream's value is wanted later");
     if (!set_at_top_.contains(name)) output_order_.push_back(name);
     set_at_top_[name] = span;
+    warn_of_constant(name, span);
   }
   variables()[name] = std::move(value);
 }

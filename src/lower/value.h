@@ -53,6 +53,7 @@ struct ModuleScope {
   std::unique_ptr<lang::Program> program;  // null for the main program, which its caller owns
   std::map<std::string, const lang::FunctionStmt*> functions;
   std::map<std::string, const lang::Expr*> constants;  // top-level `name = expression` of imported files
+  std::map<std::string, std::size_t> knobs;            // the constants that are knobs: their places
   std::vector<ModuleScope*> open_imports;              // `import m`
   std::map<std::string, ModuleScope*> named_imports;   // `import m as k`
 };

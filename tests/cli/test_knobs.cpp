@@ -33,6 +33,24 @@ TEST_F(Knobs, ProgramThenEnvironmentThenFileThenCommandLine) {
   EXPECT_EQ(level({"-D", "Level=5", "-D", "Level=6"}), 6);
 }
 
+TEST_F(Knobs, OfImportedFiles) {
+  file("tones.pse", "Level = 2 [[ max = 5, help = \"how much\" ]]\nfunction tone() return Level\n");
+  file("a.pse", "import tones\ncolor = white * tone()\n");
+  EXPECT_EQ(level({}), 2);
+  EXPECT_EQ(level({"Level=4"}), 4);
+  file("p.txt", "Level 3\n");
+  EXPECT_EQ(level({"--params", "p.txt"}), 3);
+  EXPECT_TRUE(contains(pse({"render", "a.pse", "--help"}).out, "how much (at most 5)"));
+  file("a.pse", "import tones\nLevel = 10\ncolor = white * (Level + tone())\n");
+  EXPECT_EQ(level({"Level=20"}), 22);
+  EXPECT_EQ(level({"tones.Level=1"}), 11);
+}
+
+TEST_F(Knobs, ColoursByName) {
+  file("a.pse", "Tint = white\ncolor = Tint\n");
+  EXPECT_EQ(level({"Tint=0.5*red"}), 0.5f);
+}
+
 TEST_F(Knobs, ParameterFilesInBothForms) {
   file("p.toml", "Level = 7\n");
   EXPECT_EQ(level({"--params", "p.toml"}), 7);

@@ -96,6 +96,36 @@ TEST_F(Tools, DocumentationOfEverythingListed) {
   EXPECT_EQ(json.find("\"text\": \"\""), std::string::npos);
 }
 
+TEST_F(Tools, EveryFunctionThatCanBeCalledIsDocumented) {
+  for (const char* name : {"march", "hypertexture", "texture", "texture_size", "volume", "count", "select", "min", "any",
+                           "array", "identity", "isnan", "PI", "white", "color", "normal", "soft_sphere"}) {
+    const Ended ended = pse({"doc", name});
+    EXPECT_EQ(ended.status, 0) << name;
+    EXPECT_TRUE(contains(ended.out, name));
+  }
+  // However many lines a signature has in the library, it is one.
+  EXPECT_TRUE(contains(pse({"doc", "march"}).out, "march(density, compute_color, compute_shading, origin, dir,"));
+  EXPECT_TRUE(contains(pse({"doc", "marhc"}).err, "did you mean `march`?"));
+}
+
+TEST_F(Tools, FilesBesideTheProgramHideTheLibrarys) {
+  file("waves.pse", "function mine() return 1\n");
+  file("a.pse", "import waves\ncolor = white * mine() * cycloid(0)\n");
+  const Ended ended = pse({"check", "a.pse"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_TRUE(contains(ended.err, "hides-library"));
+}
+
+TEST_F(Tools, MissingNamesAreToldWhereTheyComeFrom) {
+  file("a.pse", "color = white * normal.z\n");
+  EXPECT_TRUE(contains(pse({"render", "a.pse", "-o", "a.png"}).err, "--on sphere"));
+  file("b.pse", "color = white\n");
+  ASSERT_EQ(pse({"render", "b.pse", "-o", "b.exr", "--res", "2x2"}).status, 0);
+  file("c.pse", "color = 1 - color\n");
+  EXPECT_TRUE(contains(pse({"render", "c.pse", "fg=b.exr", "-o", "c.png"}).err, "`fg.color`"));
+  EXPECT_EQ(pse({"render", "b.pse", "-o", "b.xyz"}).status, 2);
+}
+
 TEST_F(Tools, DiffToleratesWhatItIsToldTo) {
   file("a.pse", "Level = 0\ncolor = [Level 0 0]\n");
   for (const char* level : {"0", "0.25"})

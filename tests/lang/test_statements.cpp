@@ -19,7 +19,7 @@ TEST(Statements, KnobsHaveMetadata) {
   EXPECT_EQ(tree_of("Tint = [1 0 0] [[widget = \"color\",]]"),
             "set Tint (vector 1 0 0) [widget \"color\"]\n");
   EXPECT_EQ(tree_of("Plain = 1 [[ ]]"), "set Plain 1\n");
-  EXPECT_EQ(Parsed("radius = 0.4 [[ min = 0 ]]").summary(), "1:14 metadata-place");
+  EXPECT_EQ(Parsed("radius = 0.4 [[ min = 0 ]]").summary(), "1:1 metadata-place");
   EXPECT_EQ(Parsed("Radius += 0.4 [[ min = 0 ]]").summary(), "1:15 metadata-place");
   EXPECT_EQ(Parsed("if a\n  Radius = 1 [[ min = 0 ]]").summary(), "2:14 metadata-place");
 }

@@ -41,7 +41,22 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"a = point.w", "1:unknown-component: a vector of 3 has no component `w`"},
         Case{"function f(x, x)\n  return x\na = f(1, 2)", "1:parameter-twice: `f` has two parameters named `x`"},
         Case{"function f(x)\n  return x\nfunction f(y)\n  return y\na = f(1)", "3:function-twice: function `f` is defined twice"},
-        Case{"a = 1\nb = turbulence_octaves(\"fast\")", "(called from test.pse:2:5)"},
+        Case{"a = 1\nb = turbulence_octaves(\"fast\")",
+             "2:operand-types: `turbulence_octaves` cannot be called with a text: `*` does not work on a text and a "
+             "number (see library/turbulence.pse:"},
+        Case{"a = spline(0.5, [1])", "1:index-base: `spline` cannot be called with a number and a number: "},
+        Case{"function f(p)\n  q = p\na = sqrt(f(1))", "3:no-value: `f` returns no value"},
+        Case{"a = Noise(point, sed = 2)", "1:unknown-argument: `Noise` has no parameter `sed` (did you mean `seed`?)"},
+        Case{"a = vec3(1, 2, 3)", "1:unknown-function: there is no function `vec3` (write a vector as `[a b c]`)"},
+        Case{"color = sin", "1:output-kind: `color` is a function, which makes no picture (call the function)"},
+        Case{"color = \"red\"", "1:output-kind: `color` is a text, which makes no picture"},
+        Case{"color = [1 2 3 4 5]", "1:output-kind: `color` is a vector of 5"},
+        Case{"a = q\nq = 1", "1:unknown-name: `q` is not set here, and the stream does not bring it (it is set further down"},
+        Case{"a = color", "(an image brings `fg.color`)"},
+        Case{"import wave", "1:unknown-module: there is no module `wave` (did you mean `waves`?)"},
+        Case{"a = point.xw", "1:unknown-component: a vector of 3 has no component `w`"},
+        Case{"function offer(f)\n  return f(1, 2)\nfunction one(p)\n  return p\na = offer(one)",
+             "2:argument-count: `one` takes 1 argument, this is one more"},
         Case{"return 3", "1:return-outside: `return` outside a function"},
         Case{"break", "1:not-in-loop: `break` outside a loop"},
         Case{"import nothing_here", "1:unknown-module: there is no module `nothing_here`"},
@@ -59,6 +74,42 @@ TEST(Errors, AreAllReportedAtOnce) {
 TEST(Errors, OneMistakeIsReportedOnce) {
   const Outcome outcome = run_program("a = missing\nb = a + 1\nc = b.x\nfor i in [1 .. 3]\n  c += a\n");
   EXPECT_EQ(outcome.diagnostics.error_count(), 1u) << outcome.messages();
+}
+
+// How many errors a text has, whatever they are.
+std::size_t errors_of(const char* text) { return run_program(text).diagnostics.error_count(); }
+
+TEST(Errors, NoneFollowsFromAnother) {
+  EXPECT_EQ(errors_of("a = smoothstep(\"a\", 1, 2)"), 1u);
+  EXPECT_EQ(errors_of("a = spline(0.5, 1)"), 1u);
+  EXPECT_EQ(errors_of("function f(a, a)\n  return a\nb = f(1, 2)"), 1u);
+  EXPECT_EQ(errors_of("function f(a)\n  return a\nfunction f(b)\n  return b\nc = f(1)"), 1u);
+  EXPECT_EQ(errors_of("function f(x)\n  function g(y)\n    return y\n  return x\na = f(1)"), 1u);
+  EXPECT_EQ(errors_of("radius = 1 [[ min = 0 ]]"), 1u);
+  EXPECT_EQ(errors_of("for i in 1 .. 10\n  a = i"), 1u);
+  EXPECT_EQ(errors_of("def f(x):\n  return x\na = f(1)"), 1u);
+  EXPECT_EQ(errors_of("float t = 3\na = t"), 1u);
+  EXPECT_EQ(errors_of("if 1 > 0\n  a = 1\n else\n  a = 2"), 1u);
+}
+
+TEST(Errors, EachWrongCallOfTheLibraryIsOne) {
+  const Outcome outcome = run_program("a = fbm(\"a\")\nb = fbm(\"b\")\nfor i in [1 .. 3]\n  c = i + spline(i, 1)");
+  EXPECT_EQ(outcome.diagnostics.error_count(), 3u) << outcome.messages();
+}
+
+TEST(Warnings, WhatVariesIsQuestionedInFrameBlocks) {
+  const auto warned = [](const char* text) {
+    return run_program(text, {.stream = {{"u", {1}}}, .frame = {{"time", {1}}}, .knobs = {}})
+               .messages()
+               .find("2:varies-in-frame: `u`") != std::string::npos;
+  };
+  EXPECT_TRUE(warned("if begin_frame\n  a = u * 2\nb = a"));
+  EXPECT_FALSE(warned("if begin_frame\n  a = time * 2\nb = a * u"));
+}
+
+TEST(Warnings, HidingAConstantIsQuestioned) {
+  EXPECT_NE(run_program("PI = 3\na = PI").messages().find("hides-constant"), std::string::npos);
+  EXPECT_EQ(run_program("Radius = 3\na = Radius").messages(), "");
 }
 
 TEST(Limits, ProgramsThatGrowWithoutBoundAreRefused) {

@@ -142,6 +142,36 @@ TEST(Values, KnobsComeFromOutside) {
             (Values{1, 2, 3}));
 }
 
+TEST(Values, ConstantsOfImportedFilesAreKnobs) {
+  const RunSettings settings{.modules = {{"shapes", "Size = 3\nTwice = 1\nTwice = 2\nfunction area(r)\n  return Size * r\n"},
+                                         {"more", "Size = 7\nfunction more_size() return Size\n"}}};
+  const auto a = [&](const char* text, const char* knob, float value) {
+    Outcome outcome = run_program(text, {.stream = {}, .frame = {}, .knobs = {{knob, {value}}}}, settings);
+    EXPECT_TRUE(outcome.compiled) << outcome.messages();
+    return outcome.number("a");
+  };
+  EXPECT_EQ(a("import shapes\na = area(2)", "Size", 5), 10);
+  EXPECT_EQ(a("import shapes as s\na = s.Size + s.area(1)", "Size", 5), 10);
+  // The program's own keeps the name; the file's is told apart by the file's.
+  EXPECT_EQ(a("import shapes\nSize = 1\na = area(2) + Size", "Size", 5), 11);
+  EXPECT_EQ(a("import shapes\nSize = 1\na = area(2) + Size", "shapes.Size", 5), 11);
+  EXPECT_EQ(a("import shapes\nimport more\na = 100 * area(1) + more_size()", "more.Size", 4), 304);
+  // Of what a file sets twice, the last counts.
+  EXPECT_EQ(a("import shapes\na = Twice", "Nothing", 0), 2);
+  EXPECT_EQ(a("import shapes\na = Twice", "Twice", 5), 5);
+}
+
+TEST(Values, OwnFunctionsComeBeforeTheStreamsNames) {
+  EXPECT_EQ(value("function place(t) return 2 * t\nfunction twice(f, t) return f(f(t))\na = twice(place, 3)", "a",
+                  {.stream = {{"place", {1, 2, 3}}}, .frame = {}, .knobs = {}}),
+            Values{12});
+}
+
+TEST(Values, NamedColoursAreConstants) {
+  EXPECT_EQ(value("Tint = 0.5 * red\na = Tint", "a", {.stream = {}, .frame = {}, .knobs = {{"Tint", {1, 2, 3}}}}),
+            (Values{1, 2, 3}));
+}
+
 TEST(Values, BeginFrameComputesOncePerFrame) {
   EXPECT_EQ(value("function makewaves(n)\n  for i in [1 .. n]\n    center[i] = i * [100 0 0]\n  return center\n"
                   "if begin_frame\n  center = makewaves(20)\nfor c in center\n  normal += c", "normal",

@@ -13,6 +13,9 @@ TEST(NoiseApi, GivesTheLanguagesNumbers) {
   const std::vector<std::pair<std::string, std::vector<float>>> seed = {{"seed", {7}}};
   EXPECT_EQ(noise(p), run_builtin("Noise", at)[0]);
   EXPECT_EQ(noise(p, 7), run_builtin("Noise", at, seed)[0]);
+  EXPECT_EQ(noise({3.3f, -8.25f, 101.5f}), noise(p));
+  EXPECT_EQ(pnoise({3.3f, -8.25f, 101.5f}, {5, 6, 7}), pnoise(p, {5, 6, 7}));
+  EXPECT_EQ(dnoise({3.3f, -8.25f, 101.5f}), dnoise(p));
   EXPECT_EQ(noise(3.3f), run_builtin("Noise", {{3.3f}})[0]);
   EXPECT_EQ(pnoise(p, {5, 6, 7}, 7), run_builtin("pnoise", {at[0], {5, 6, 7}}, seed)[0]);
   EXPECT_EQ(dnoise(p)[1], run_builtin("Dnoise", at)[1]);

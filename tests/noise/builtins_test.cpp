@@ -48,24 +48,24 @@ TEST(Builtins, SaysWhatIsWrong) {
                         const std::vector<std::pair<std::string, std::vector<float>>>& named = {}) {
     return BuiltinProgram(name, arguments, named).error;
   };
-  EXPECT_EQ(error("sqrt", {}), "'a' is missing in the call of sqrt(a)");
-  EXPECT_EQ(error("sqrt", {{1}, {2}}), "too many arguments for sqrt(a)");
-  EXPECT_EQ(error("sqrt", {{1}}, {{"seed", {1}}}), "sqrt(a) has no parameter 'seed'");
+  EXPECT_EQ(error("sqrt", {}), "`sqrt(a)` needs a value for `a`");
+  EXPECT_EQ(error("sqrt", {{1}, {2}}), "too many arguments for `sqrt(a)`");
+  EXPECT_EQ(error("sqrt", {{1}}, {{"seed", {1}}}), "`sqrt(a)` has no parameter `seed`");
   EXPECT_EQ(error("max", {{1, 2}, {1, 2, 3}}),
-            "max takes vectors of one length, and these have 2 and 3 components");
+            "`max` takes vectors of one length, and these have 2 and 3 components");
   EXPECT_EQ(error("Noise", {{1, 2, 3, 4, 5}}),
-            "Noise takes a position of 1 to 4 coordinates, and this has 5");
+            "`Noise` takes a position of 1 to 4 coordinates, and this has 5");
   EXPECT_EQ(error("pnoise", {{1, 2, 3}}),
-            "'period' is missing in the call of pnoise(p..., period, seed = 0)");
+            "`pnoise(p..., period, seed = 0)` needs a value for `period`");
   EXPECT_EQ(error("pnoise", {{1, 2, 3}, {4, 4}}),
-            "the period of pnoise is one number or one for each of the 3 coordinates");
-  EXPECT_EQ(error("Noise", {{1, 2, 3}}, {{"seed", {1, 2}}}), "the seed of Noise is one number");
+            "the period of `pnoise` is one number or one for each of the 3 coordinates");
+  EXPECT_EQ(error("Noise", {{1, 2, 3}}, {{"seed", {1, 2}}}), "the seed of `Noise` is one number");
   EXPECT_EQ(error("book_noise", {{1, 2}}),
-            "book_noise takes a position of 3 coordinates, and this has 2");
+            "`book_noise` takes a position of 3 coordinates, and this has 2");
   EXPECT_EQ(error("book_noise", {{1, 2, 3}}, {{"seed", {1}}}),
-            "book_noise(p...) has no parameter 'seed'");
+            "`book_noise(p...)` has no parameter `seed`");
   EXPECT_EQ(error("dot", {{1, 2, 3}, {1, 2}}),
-            "dot takes two vectors of one length, and these have 3 and 2 components");
+            "`dot` takes two vectors of one length, and these have 3 and 2 components");
 }
 
 TEST(Builtins, LargeBodiesAreWrittenOnce) {

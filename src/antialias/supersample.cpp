@@ -54,7 +54,7 @@ Refined Refiner::sample(std::vector<Pixel> pixels, std::uint32_t first, std::uin
   Refined result(std::move(pixels), outputs_);
   if (uneven) uneven->assign(result.pixels.size(), false);
   const std::size_t at_once = std::max<std::size_t>(1, most_places / each);
-  for (std::size_t begin = 0; begin < result.pixels.size() && !status.cancel; begin += at_once) {
+  for (std::size_t begin = 0; begin < result.pixels.size() && !status.stopped(); begin += at_once) {
     const std::size_t end = std::min(begin + at_once, result.pixels.size());
     Places& places = work.places;
     places.x.resize((end - begin) * each), places.y.resize((end - begin) * each);

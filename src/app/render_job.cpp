@@ -212,6 +212,7 @@ image::Result<std::unique_ptr<image::ImageWriter>> RenderJob::open_writer(
     movie.frames_per_second = options_.fps;
     movie.working = write.working;
     movie.tone = write.tone;
+    movie.ocio = write.ocio;
     movie.dither = write.dither;
     auto film = image::open_movie(name, spec, movie);
     if (!film) return std::unexpected(film.error());

@@ -220,7 +220,7 @@ Result<std::unique_ptr<ImageWriter>> open_foreign_writer(const std::string& path
   layout.quality = options.quality;
 
   auto transform = DisplayTransform::create(std::move(*chosen), options.working,
-                                            light ? Tone::raw : options.tone, options.ocio_view);
+                                            light ? Tone::raw : options.tone, options.ocio);
   if (!transform) return std::unexpected(transform.error());
   auto file = OutputFile::create(path, options.sync);
   if (!file) return std::unexpected(file.error());

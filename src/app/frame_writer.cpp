@@ -13,10 +13,11 @@ namespace {
 // Pictures with more than this are not kept in memory for snapshots.
 constexpr std::int64_t most_snapshot_bytes = std::int64_t{128} << 20;
 
+// All of it is about outputs: a format that there is not, or that cannot hold this, was asked for.
 [[noreturn]] void throw_failure(const image::ImageError& error) {
-  throw Failure(error.kind == image::ErrorKind::not_finite ? Exit::strict
-                : error.is_output()                        ? Exit::output
-                                                           : Exit::input,
+  throw Failure(error.kind == image::ErrorKind::not_finite    ? Exit::strict
+                : error.kind == image::ErrorKind::unsupported ? Exit::usage
+                                                              : Exit::output,
                 error.message);
 }
 

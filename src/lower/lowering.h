@@ -191,6 +191,7 @@ class Lowering {
   int loop_attempts_ = 0;
   int depth_ = 0;
   int loop_depth_ = 0;
+  int branch_depth_ = 0;
 };
 
 }  // namespace pse::lower

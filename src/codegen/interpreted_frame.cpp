@@ -23,7 +23,7 @@ ArrayPlaces place_arrays(const std::vector<ir::Array>& arrays, float* frame,
       continue;
     }
     places.views.push_back({sample, &places.sample_lengths[i]});
-    sample += floats_of(arrays[i]);
+    if (sample != nullptr) sample += floats_of(arrays[i]);
   }
   return places;
 }

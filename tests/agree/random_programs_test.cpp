@@ -52,11 +52,11 @@ AgreementResult run(const Kernel& kernel, const ir::Module& module, std::uint64_
 
 // The compiled program on some number of threads, in tiles of some size: the same for the same seed.
 std::string check_tiles(const Program& program, std::unique_ptr<Kernel> kernel,
-                        const AgreementResult& expected, std::uint64_t seed) {
+                        const AgreementResult& expected, std::uint64_t seed, std::size_t w) {
   Program compiled = program;
   compiled.kernel = std::move(kernel);
   static constexpr int tile_widths[] = {1, 5, agreement_width}, tile_heights[] = {2, 1, 3, 64};
-  const std::uint64_t turn = seed / 4;
+  const std::uint64_t turn = seed / 4 + w;
   const ExecuteOptions how{.tile_width = tile_widths[turn % 3],
                            .tile_height = tile_heights[turn % 4],
                            .threads = static_cast<int>(turn % 5) + 1,
@@ -95,7 +95,7 @@ std::string check_program(std::uint64_t seed) {
     const std::string at_width = "width " + std::to_string(width);
     if (const std::string d = difference(expected, run(**kernel, optimised->module(), seed)); !d.empty())
       return fail(at_width + " differs: " + d);
-    if (const std::string d = check_tiles(*optimised, std::move(*kernel), expected, seed + w); !d.empty())
+    if (const std::string d = check_tiles(*optimised, std::move(*kernel), expected, seed, w); !d.empty())
       return fail(at_width + ", " + d);
   }
   return {};

@@ -92,6 +92,8 @@ def run_fuzz(build, seconds):
     total = [0, 0, 0]
     failures = []
     running = []
+    # The undefined-behaviour sanitizer only speaks, unless it is told to stop.
+    environment = dict(os.environ, UBSAN_OPTIONS="halt_on_error=1:print_stacktrace=1")
     for program in sorted(build.rglob("fuzz_*")):
         if not program.is_file() or not os.access(program, os.X_OK) or program.suffix:
             continue
@@ -105,7 +107,8 @@ def run_fuzz(build, seconds):
         if kept.is_dir():
             command.append(str(kept))
         log = open(work / "log.txt", "w")
-        running.append((name, work, subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log)))
+        running.append((name, work, subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
+                                                      env=environment)))
     for name, work, process in running:
         good = process.wait() == 0
         log = (work / "log.txt").read_text(errors="replace").splitlines()

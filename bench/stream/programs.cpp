@@ -10,21 +10,32 @@
 
 namespace pse::bench {
 
-Measured run_pse(const std::vector<std::string>& arguments) {
+pid_t start_pse(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
   std::vector<std::string> words = {PSE_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
 
-  const auto start = std::chrono::steady_clock::now();
+  // Standard output is a pipe where somebody would read it, if anybody did.
+  int ends[2] = {-1, -1};
+  if (!folder.empty() && pipe2(ends, O_CLOEXEC) != 0) return -1;
   const pid_t child = vfork();
   if (child == 0) {
     const int nothing = open("/dev/null", O_RDWR);
-    if (dup2(nothing, 0) < 0 || dup2(nothing, 1) < 0 || dup2(nothing, 2) < 0) _exit(99);
+    if (dup2(nothing, 0) < 0 || dup2(folder.empty() ? nothing : ends[1], 1) < 0 ||
+        dup2(nothing, 2) < 0 || (!folder.empty() && chdir(folder.c_str()) != 0))
+      _exit(99);
     execv(argv[0], argv.data());
     _exit(98);
   }
+  if (ends[1] >= 0) close(ends[1]);  // the other stays, as the reader that does not read
+  return child;
+}
+
+Measured run_pse(const std::vector<std::string>& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  const pid_t child = start_pse(arguments);
   int status = 0;
   rusage usage{};
   wait4(child, &status, 0, &usage);

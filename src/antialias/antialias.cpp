@@ -59,8 +59,9 @@ class Execution {
     shown.kernel->run_frame(state, status_);
     if (status_.failed_check >= 0) return {RunEnd::failed, status_.failed_check, -1, -1, 0};
     if (status_.cancel) return {RunEnd::cancelled};
-    RunStatus unchecked;
+    RunStatus unchecked{.outer = &status_};
     const Placed quiet(*programs_.quiet, host_, unchecked);
+    if (status_.cancel) return {RunEnd::cancelled};
     const bool anywhere = quiet.samples->anywhere();
     procedural_ = antialias_.mode == Mode::procedural && programs_.has_paths && anywhere;
     supersample_ = antialias_.mode == Mode::supersample;
@@ -102,7 +103,9 @@ class Execution {
       const Borrowed work(*this);
       if (supersample_) return put(tile, all->supersample(pixels_of(tile.rect), *work, status));
       Counts counts;
-      const Refined refined = edges().refine(tile, *work, status, counts);
+      const Refiner* refiner = edges();
+      if (refiner == nullptr) return;
+      const Refined refined = refiner->refine(tile, *work, status, counts);
       cut_apron(tile);
       put({tile.rect, tile.rect, outputs, programs_.outputs}, refined);
       const std::lock_guard lock(mutex_);
@@ -155,20 +158,23 @@ class Execution {
     return {rect.x0 - apron_, rect.y0 - apron_, rect.x1 + apron_, rect.y1 + apron_};
   }
 
-  // The first tile with an edge waits for its program.
-  const Refiner& edges() {
+  // The first tile with an edge waits for its program; null when the run is cancelled meanwhile.
+  const Refiner* edges() {
     std::call_once(once_, [&] {
       const PlaceRunner* edges = nullptr;
       if (programs_.edges.valid()) {
+        while (programs_.edges.wait_for(std::chrono::milliseconds(5)) ==
+               std::future_status::timeout)
+          if (status_.cancel) return;
         const auto& program = programs_.edges.get();
         if (!program) throw std::runtime_error(program.error());
-        RunStatus unchecked;
+        RunStatus unchecked{.outer = &status_};
         edge_program_.emplace(**program, host_, unchecked);
         edges = &*edge_program_->runner;
       }
       refiner_.emplace(*quiet_->runner, edges, antialias_, programs_.outputs);
     });
-    return *refiner_;
+    return refiner_ && !status_.cancel ? &*refiner_ : nullptr;
   }
 
   static std::vector<Pixel> pixels_of(const Rect& rect) {

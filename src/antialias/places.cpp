@@ -115,7 +115,7 @@ const Results& PlaceRunner::run(Work& work, RunStatus& status) const {
   work.results.resize(outputs, count);
   const std::span<float* const> in = inputs(work).pointers();
   std::vector<float*> out(outputs);
-  for (std::size_t first = 0; first < count && !status.cancel; first += batch) {
+  for (std::size_t first = 0; first < count && !status.stopped(); first += batch) {
     const std::size_t size = std::min(batch, count - first);
     fill(x.subspan(first, size), y.subspan(first, size), in);
     for (std::size_t o = 0; o < outputs; ++o) out[o] = work.results[o] + first;

@@ -54,7 +54,7 @@ void Refiner::sample(const std::vector<Pixel>& pixels, std::uint32_t first, std:
                      Work& work, RunStatus& status, const Visit& visit) const {
   const std::size_t each = last - first;
   const std::size_t at_once = std::max<std::size_t>(1, most_places / each);
-  for (std::size_t begin = 0; begin < pixels.size() && !status.cancel; begin += at_once) {
+  for (std::size_t begin = 0; begin < pixels.size() && !status.stopped(); begin += at_once) {
     const std::size_t end = std::min(begin + at_once, pixels.size());
     Places& places = work.places;
     places.x.resize((end - begin) * each), places.y.resize((end - begin) * each);

@@ -149,6 +149,9 @@ Exit BakeJob::run_frame(int index, int frame) {
 
   // Run.
   progress_.begin_frame(index, frame);
+  if (!session_.arguments.has("quiet"))
+    signals_.set_last_words(
+        fmt::format("stopped at frame {}; its file is as it was\n", frame));
   FrameState state;
   volume::set_lattice_uniforms(program_->module(), lattice_, {double(frame), common.fps, common.seed},
                                state);
@@ -176,7 +179,7 @@ Exit BakeJob::run_frame(int index, int frame) {
   }
   if (const int signal = signals_.stop_signal()) {
     progress_.finish();
-    session_.console.note(fmt::format("stopped at frame {}; its file is as it was", frame));
+    signals_.say_last_words();
     return static_cast<Exit>(128 + signal);
   }
   if (result.end == RunEnd::cancelled) return Exit::running;
@@ -186,6 +189,7 @@ Exit BakeJob::run_frame(int index, int frame) {
   attributes["pse/up"] = options_.z_up ? "z" : "y";
   attributes["pse/units"] = "metres";
   write_grids(*writer, name, attributes, made_by, common.provenance);
+  signals_.set_last_words({});
   report_result(result, name);
   return Exit::ok;
 }

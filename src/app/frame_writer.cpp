@@ -13,6 +13,7 @@ namespace {
 // Pictures with more than this are not kept in memory for snapshots.
 constexpr std::int64_t most_snapshot_bytes = std::int64_t{128} << 20;
 
+// All of it is about outputs: a format that there is not, or that cannot hold this, was asked for.
 [[noreturn]] void throw_failure(const image::ImageError& error) {
   // What is asked of a writer and cannot be done was asked for on the command line.
   const bool asked = error.kind == image::ErrorKind::unsupported ||

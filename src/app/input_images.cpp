@@ -15,28 +15,38 @@ Failure input_failure(const image::ImageError& error) { return {Exit::input, err
 
 std::string stream_prefix(const std::string& name) { return name.empty() ? "" : name + "."; }
 
-// One module input and the plane that feeds it.
+// One module input and the plane of the image's bands that feeds it.
 struct Feed {
   std::size_t input;
-  std::shared_ptr<const image::Image> picture;
   std::size_t plane;
 };
 
-// Copies the part of a plane that lies under the tile; 0 where the image has no pixels.
-void fill(const Feed& feed, int origin_x, int origin_y, const TileView& tile) {
-  const image::Window& data = feed.picture->spec.data;
-  const std::vector<float>& plane = feed.picture->planes[feed.plane];
-  float* out = tile.planes[feed.input];
+// An image's pixels on their way into tiles.
+struct Stream {
+  std::shared_ptr<image::RowBands> bands;
+  std::vector<Feed> feeds;
+  image::Window display;
+};
+
+// Copies the parts of an image's planes that lie under the tile; 0 where it has no pixels.
+void fill(const Stream& stream, const TileView& tile) {
+  const image::Window& data = stream.bands->window();
+  const int origin_x = stream.display.x0, origin_y = stream.display.y0;
+  const auto bands = stream.bands->rows(tile.rect.y0 + origin_y, tile.rect.y1 + origin_y);
+  if (!bands) throw input_failure(bands.error());
   const int x0 = tile.rect.x0 + origin_x, x1 = tile.rect.x1 + origin_x;
   const int begin = std::clamp(data.x0, x0, x1), end = std::clamp(data.x1, begin, x1);
-  for (int row = tile.rect.y0; row < tile.rect.y1; ++row, out += tile.rect.width()) {
-    const int y = row + origin_y;
-    const bool inside = y >= data.y0 && y < data.y1 && begin < end;
-    std::fill_n(out, tile.rect.width(), 0.0f);
-    if (inside) {
-      const std::int64_t start = std::int64_t{y - data.y0} * data.width() + (begin - data.x0);
-      std::copy_n(plane.begin() + start, end - begin, out + (begin - x0));
-    }
+  for (const Feed& feed : stream.feeds) {
+    float* to = tile.planes[feed.input];
+    std::fill_n(to, tile.count, 0.0f);
+    for (const auto& band : *bands)
+      for (int y = std::max(band->y0, tile.rect.y0 + origin_y);
+           y < std::min(band->y1, tile.rect.y1 + origin_y) && begin < end; ++y)
+        std::copy_n(band->planes[feed.plane].data() +
+                        std::int64_t{y - band->y0} * data.width() + (begin - data.x0),
+                    end - begin,
+                    to + std::int64_t{y - origin_y - tile.rect.y0} * tile.rect.width() +
+                        (begin - x0));
   }
 }
 
@@ -53,7 +63,7 @@ InputImages::InputImages(const RenderOptions& options, const Session& session)
   read_.working = options.write.working;
   for (const ImageRequest& image : options.images)
     images_.push_back(
-        {image.name, session.find_file(image.file), {}, nullptr, {}, image.derived});
+        {.name = image.name, .pattern = session.find_file(image.file), .derived = image.derived});
 }
 
 bool InputImages::vary() const {
@@ -71,6 +81,7 @@ void InputImages::open(int frame) {
     auto reader = image::open_reader(*file, read_);
     if (!reader) throw input_failure(reader.error());
     image.file = *file;
+    image.bands.reset();
     image.reader = std::move(*reader);
     image.layers = image::layers_of(image.reader->spec());
   }
@@ -126,52 +137,43 @@ std::vector<std::pair<std::string, std::string>> InputImages::identities() const
 }
 
 TileSource InputImages::load(const ir::Module& module, const ImagePlane& picture_plane) {
-  struct Loaded {
-    std::vector<Feed> feeds;
-    std::vector<image::Window> displays;  // one per feed
-  };
-  auto loaded = std::make_shared<Loaded>();
-
+  auto streams = std::make_shared<std::vector<Stream>>();
   for (Open& image : images_) {
     // Find the channels that the program reads, and the inputs they feed.
-    std::vector<std::string> channels;
-    std::vector<std::size_t> inputs;
-    const image::ImageSpec& spec = image.reader->spec();
+    std::vector<int> channels;
+    std::vector<Feed> feeds;
     for (const image::Layer& layer : image.layers) {
       if (is_hidden(image, layer)) continue;
       const std::string name = stream_prefix(image.name) + layer.name;
       for (int c = 0; c < layer.components(); ++c) {
         const std::string component =
             layer.components() == 1 ? name : fmt::format("{}.{}", name, c);
+        const int channel = layer.channels[static_cast<std::size_t>(c)];
         for (std::size_t i = 0; i < module.inputs.size(); ++i) {
           if (module.inputs[i].rate != ir::Rate::sample || module.inputs[i].name != component)
             continue;
-          inputs.push_back(i);
-          channels.push_back(
-              spec.channels[static_cast<std::size_t>(layer.channels[static_cast<std::size_t>(c)])]
-                  .name);
+          const auto known = std::ranges::find(channels, channel);
+          feeds.push_back({i, static_cast<std::size_t>(known - channels.begin())});
+          if (known == channels.end()) channels.push_back(channel);
         }
       }
     }
     if (channels.empty()) continue;
 
-    // Read them.
-    auto picture = image::read_image(*image.reader, read_.limits, channels);
-    if (!picture) throw input_failure(picture.error());
-    const auto shared = std::make_shared<const image::Image>(std::move(*picture));
-    for (std::size_t k = 0; k < channels.size(); ++k) {
-      const int plane = shared->spec.find(channels[k]);
-      if (plane < 0)
-        throw Failure(Exit::input, fmt::format("{} has no channel {}", image.file, channels[k]));
-      loaded->feeds.push_back({inputs[k], shared, static_cast<std::size_t>(plane)});
-      loaded->displays.push_back(spec.display);
-    }
+    // Read the first rows now: what is broken should be known before anything is computed. What
+    // another frame of the same file has read is still there.
+    if (!image.bands || image.channels != channels)
+      image.bands = std::make_shared<image::RowBands>(*image.reader, channels, read_.limits);
+    image.channels = channels;
+    const image::Window& data = image.bands->window();
+    if (const auto first = image.bands->rows(data.y0, data.y0 + 1); !first)
+      throw input_failure(first.error());
+    streams->push_back({image.bands, std::move(feeds), image.reader->spec().display});
   }
-  return [loaded = std::shared_ptr<const Loaded>(loaded),
+  return [streams = std::shared_ptr<const std::vector<Stream>>(streams),
           tables = tables_.load(module, picture_plane)](const TileView& tile) {
     tables(tile);
-    for (std::size_t k = 0; k < loaded->feeds.size(); ++k)
-      fill(loaded->feeds[k], loaded->displays[k].x0, loaded->displays[k].y0, tile);
+    for (const Stream& stream : *streams) fill(stream, tile);
   };
 }
 

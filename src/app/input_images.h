@@ -9,6 +9,7 @@
 #include "app/render_options.h"
 #include "image/layers.h"
 #include "image/reader.h"
+#include "image/row_bands.h"
 #include "stream/executor.h"
 
 namespace pse::app {
@@ -41,17 +42,20 @@ class InputImages {
   // Files opened for this frame, with what tells one version of a file from another.
   std::vector<std::pair<std::string, std::string>> identities() const;
 
-  // Reads the channels that the module reads, and gives what fills them in. `picture_plane` is
-  // the picture, for inserted tables. Throws Failure (input).
+  // Gives what fills the channels that the module reads in, a band of rows at a time (RowBands), as
+  // long as no other frame is opened. `picture_plane` is the picture, for inserted tables. Both
+  // throw Failure (input).
   TileSource load(const ir::Module& module, const ImagePlane& picture_plane);
 
  private:
   struct Open {
     std::string name;     // of the variable
     std::string pattern;  // as found
-    std::string file;     // of this frame
-    std::unique_ptr<image::ImageReader> reader;
-    std::vector<image::Layer> layers;
+    std::string file = {};  // of this frame
+    std::unique_ptr<image::ImageReader> reader = nullptr;
+    std::vector<image::Layer> layers = {};
+    std::vector<int> channels = {};                    // that the program reads
+    std::shared_ptr<image::RowBands> bands = nullptr;  // their pixels
     bool derived = false;
   };
   bool is_hidden(const Open& image, const image::Layer& layer) const;

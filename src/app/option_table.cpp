@@ -159,8 +159,10 @@ std::vector<OptionSpec> render_options() {
        "display",
        one,
        "NAME",
-       "transform to the screen for PNG, JPEG and MP4; default srgb",
-       {"srgb", "filmic", "none"}},
+       "transform to the screen for PNG, JPEG and MP4: `srgb`, `filmic` or `none`; `ocio` is the "
+       "usual display of the configuration that $OCIO names, and any other name one of its displays. "
+       "Default srgb"},
+      {"", "view", one, "NAME", "a view of that display in $OCIO's configuration; default its first"},
       {"",
        "nan",
        one,
@@ -468,7 +470,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 7> variables
     {"XDG_CONFIG_HOME",
      "pse/pse.toml is read there after pse.toml here and upward; default ~/.config"},
     {"NO_COLOR", "when set, no colours"},
-    {"OCIO", "an OpenColorIO configuration"},
+    {"OCIO", "an OpenColorIO configuration, for --display and --view"},
     {"SOURCE_DATE_EPOCH", "the date of manual pages; no other file holds a time"},
 }};
 

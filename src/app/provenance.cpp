@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <filesystem>
 
+#include "app/input_images.h"
 #include "app/knobs.h"
 #include "app/version.h"
 #include "base/hash.h"
@@ -48,6 +50,12 @@ std::string recipe(const RenderContext& context, const PlannedFile& file) {
                           static_cast<int>(write.working), static_cast<int>(write.tone), write.bits,
                           write.quality, static_cast<int>(context.options.nan)})
     hasher.add(value);
+  if (write.tone == image::Tone::ocio) {
+    const char* config = std::getenv("OCIO");
+    for (const std::string& text : {write.ocio.display, write.ocio.view,
+                                    file_identity(config != nullptr ? config : "-")})
+      hasher.add(text);
+  }
   for (const PlannedChannel& channel : file.channels) {
     hasher.add(channel.channel.name);
     hasher.add(static_cast<int>(channel.channel.type));

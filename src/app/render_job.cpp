@@ -134,7 +134,7 @@ Exit RenderJob::run_frame(int index, int frame) {
   common.frames_per_second = frames_.size() > 1 ? plane_.fps : 0;
   if (options_.provenance) common.attributes = provenance(context);
   if (surfaces_ != nullptr) {
-    surfaces_->begin_frame(plane_);
+    surfaces_->begin_frame(plane_, status_);
     if (options_.trace) common.attributes.merge(surfaces_->attributes());
   }
   const TileSource pixels = images_.load(program_->module(), plane_);
@@ -154,6 +154,9 @@ Exit RenderJob::run_frame(int index, int frame) {
 
   // Compute.
   progress_.begin_frame(index, frame);
+  if (!session_.arguments.has("quiet"))
+    signals_.set_last_words(
+        fmt::format("stopped at frame {}; its files are as they were\n", frame));
   TileSource seen;
   if (surfaces_ != nullptr) {
     seen = surface::at_pixel_centres(surfaces_->samples(program_->module(), plane_));
@@ -167,7 +170,7 @@ Exit RenderJob::run_frame(int index, int frame) {
   if (result.end == RunEnd::failed) return report_failure(result, frame), Exit::running;
   if (const int signal = signals_.stop_signal()) {
     progress_.finish();
-    session_.console.note(fmt::format("stopped at frame {}; its files are as they were", frame));
+    signals_.say_last_words();
     return static_cast<Exit>(128 + signal);
   }
   if (result.end == RunEnd::cancelled) return Exit::running;
@@ -180,6 +183,7 @@ Exit RenderJob::run_frame(int index, int frame) {
   for (const std::string& name : writer.close())
     if (name != "-" && !image::is_movie_name(name))
       session_.console.note(fmt::format("wrote {}", name));
+  signals_.set_last_words({});
   report_not_finite(writer);
   return Exit::ok;
 }
@@ -208,6 +212,7 @@ image::Result<std::unique_ptr<image::ImageWriter>> RenderJob::open_writer(
     movie.frames_per_second = options_.fps;
     movie.working = write.working;
     movie.tone = write.tone;
+    movie.ocio = write.ocio;
     movie.dither = write.dither;
     auto film = image::open_movie(name, spec, movie);
     if (!film) return std::unexpected(film.error());

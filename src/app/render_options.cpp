@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <filesystem>
 
+#include "image/ocio.h"
 #include "image/sequence.h"
 
 namespace pse::app {
@@ -137,13 +139,36 @@ std::vector<OutputRequest> output_requests(const Arguments& arguments) {
   return outputs;
 }
 
+// `--display srgb|filmic|none`, or a display and `--view` of $OCIO's configuration, which is asked now:
+// a wrong name should not cost a rendering.
+void read_display(const Arguments& arguments, image::WriteOptions& write) {
+  const bool has_view = arguments.has("view");
+  const std::string display = arguments.text_or("display", has_view ? "ocio" : "srgb");
+  const bool own = display == "srgb" || display == "filmic" || display == "none";
+  if (own && has_view)
+    throw usage_error(fmt::format("--view is one of an OpenColorIO display, and `{}` is not", display),
+                      "--display ocio, or a display of the configuration that $OCIO names");
+  write.tone = own ? *image::tone_from_name(display == "none" ? "raw" : display) : image::Tone::ocio;
+  if (own) return;
+  const char* config = std::getenv("OCIO");
+  if (display != "ocio" && (config == nullptr || *config == '\0'))
+    throw usage_error(fmt::format("--display is srgb, filmic or none, not `{}`", display),
+                      "other displays are those of the OpenColorIO configuration that the "
+                      "environment variable OCIO names, and it names none");
+  write.ocio = {display == "ocio" ? "" : display, arguments.text_or("view", "")};
+  if (const auto view = image::open_ocio_view(write.working, write.ocio); !view)
+    throw Failure(view.error().kind == image::ErrorKind::cannot_read && config != nullptr
+                      ? Exit::input
+                      : Exit::usage,
+                  view.error().message);
+}
+
 void read_write_options(const Arguments& arguments, RenderOptions& options) {
   image::WriteOptions& write = options.write;
   write.format = arguments.text_or("format", "");
   write.compression = *image::compression_from_name(arguments.text_or("compression", "zip"));
   write.working = *image::colour_space_from_name(arguments.text_or("colorspace", "lin_rec709"));
-  const std::string display = arguments.text_or("display", "srgb");
-  write.tone = *image::tone_from_name(display == "none" ? "raw" : display);
+  read_display(arguments, write);
   write.bits = arguments.text_or("bits", "8") == "16" ? 16 : 8;
   if (arguments.has("tiled")) write.tile_width = write.tile_height = 64;
   options.nan = *image::nan_policy_from_name(arguments.text_or("nan", "keep"));

@@ -1,13 +1,20 @@
 // The thread that waits for signals.
 #include "app/signals.h"
 
+#include <poll.h>
 #include <pthread.h>
 #include <signal.h>
 #include <time.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <utility>
+
 namespace pse::app {
 namespace {
+
+// From the signal to the process's end, at most.
+constexpr long patience_ns = 45'000'000;
 
 sigset_t watched_signals() {
   sigset_t set;
@@ -40,9 +47,14 @@ void Signals::watch(RunStatus* run) {
 
 void Signals::wait(const std::stop_token& stop) {
   const sigset_t set = watched_signals();
+  const timespec patience{0, patience_ns};
   while (!stop.stop_requested()) {
-    const int signal = sigwaitinfo(&set, nullptr);
-    if (stop.stop_requested() || signal < 0) continue;
+    const int asked = stop_signal_;
+    const int signal = asked != 0 ? sigtimedwait(&set, nullptr, &patience)
+                                  : sigwaitinfo(&set, nullptr);
+    if (stop.stop_requested()) return;
+    if (asked != 0 && signal < 0 && errno == EAGAIN) end(asked);
+    if (signal < 0) continue;
     if (signal == SIGUSR1)
       snapshot_ = true;
     else
@@ -51,10 +63,37 @@ void Signals::wait(const std::stop_token& stop) {
 }
 
 void Signals::stop_run(int signal) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (run_ != nullptr && stop_signal_ == 0) {
+      stop_signal_ = signal;
+      run_->cancel = true;
+      return;
+    }
+  }
+  end(signal);
+}
+
+void Signals::end(int signal) {
+  say_last_words();
+  _exit(128 + signal);
+}
+
+void Signals::set_last_words(std::string words) {
   const std::lock_guard lock(mutex_);
-  if (run_ == nullptr || stop_signal_ != 0) _exit(128 + signal);
-  stop_signal_ = signal;
-  run_->cancel = true;
+  last_words_ = std::move(words);
+}
+
+// Not through stdio, whose lock another thread may hold, and not where it would have to wait.
+void Signals::say_last_words() {
+  std::string words;
+  {
+    const std::lock_guard lock(mutex_);
+    words = std::exchange(last_words_, {});
+  }
+  pollfd err{STDERR_FILENO, POLLOUT, 0};
+  if (words.empty() || poll(&err, 1, 0) != 1 || (err.revents & POLLOUT) == 0) return;
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, words.data(), words.size());
 }
 
 }  // namespace pse::app

@@ -42,9 +42,10 @@ SpaceFunction::SpaceFunction(const std::string& path, const RenderOptions& optio
     axis_of_.push_back(input.rate == ir::Rate::sample ? input.name.back() - '0' : -1);
 }
 
-void SpaceFunction::begin_frame(const ImagePlane& plane) {
+void SpaceFunction::begin_frame(const ImagePlane& plane, const RunStatus& run) {
+  run_ = &run;
   state_ = plane_state(program_->module(), plane, program_->knobs);
-  RunStatus status;
+  RunStatus status{.outer = run_};
   program_->kernel->run_frame(state_, status);
   if (status.failed_check >= 0)
     throw Failure(Exit::running, fmt::format("{}: {}", path_, program_->module().checks[static_cast<std::size_t>(status.failed_check)].message));
@@ -58,7 +59,7 @@ surface::Field SpaceFunction::field() const {
     for (const int axis : axis_of_) inputs.push_back(axis < 0 ? nullptr : axes[axis]);
     const std::vector<bool> all(program_->module().outputs.size(), true);
     const Planes outputs(all, count);
-    RunStatus status;
+    RunStatus status{.outer = run_};
     Scratch scratch;
     program_->kernel->run_samples(state_, status, scratch, inputs.data(),
                                   outputs.pointers().data(), count);

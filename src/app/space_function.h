@@ -14,8 +14,9 @@ class SpaceFunction {
   // Throws Failure (program) after the errors have been reported.
   SpaceFunction(const std::string& path, const RenderOptions& options, Session& session);
 
-  // Computes what holds for a frame. Throws Failure (running).
-  void begin_frame(const ImagePlane& plane);
+  // Computes what holds for a frame. `run` stops the function, now and when the field is asked; it
+  // must live until the next frame. Throws Failure (running).
+  void begin_frame(const ImagePlane& plane, const RunStatus& run);
   // Valid as long as this, between begin_frame and the next.
   surface::Field field() const;
 
@@ -25,6 +26,7 @@ class SpaceFunction {
   std::size_t output_ = 0;
   std::vector<int> axis_of_;  // module input -> 0, 1, 2, or -1
   FrameState state_;
+  const RunStatus* run_ = nullptr;
 };
 
 }  // namespace pse::app

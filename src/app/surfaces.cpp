@@ -250,13 +250,13 @@ surface::Camera Surfaces::camera(const ImagePlane& plane, const surface::Scene& 
   return orbited(camera, asked.orbit * plane.frame / plane.fps);
 }
 
-void Surfaces::begin_frame(const ImagePlane& plane) {
+void Surfaces::begin_frame(const ImagePlane& plane, const RunStatus& run) {
   if (is_stored()) {
     begin_stored_frame();
     for (const Joined& joined : joined_) joined.shader->begin_frame(states(joined, plane));
     return;
   }
-  for (const auto& function : functions_) function->begin_frame(plane);
+  for (const auto& function : functions_) function->begin_frame(plane, run);
   // Place the objects.
   std::vector<surface::Object> objects;
   for (std::size_t i = 0; i < shapes_.size(); ++i)

@@ -45,8 +45,9 @@ class Surfaces {
   // All programs as one, for the executor.
   antialias::Programs combine(std::vector<SurfaceProgram> programs, antialias::Mode mode);
 
-  // Sets the scene up for a frame of this picture.
-  void begin_frame(const ImagePlane& plane);
+  // Sets the scene up for a frame of this picture; `run` stops the functions of isosurfaces, and
+  // must live until the next.
+  void begin_frame(const ImagePlane& plane, const RunStatus& run);
   // The plane's names and the surfaces', at any places of the frame that was begun.
   std::unique_ptr<SampleSource> samples(const ir::Module& module, const ImagePlane& plane) const;
   // What a picture of these surfaces should say of them in its head.

@@ -56,11 +56,11 @@ void CompiledKernel::run_samples(const FrameState& state, RunStatus& status, Scr
   call.frame_arrays = const_cast<float*>(state.arrays.data());
   call.frame_lengths = const_cast<std::int32_t*>(state.array_lengths.data());
   call.scratch = aligned(scratch.memory.data());
-  call.cancel = &status.cancel;
+  call.cancel = &status.stop();
   call.externals = state.externals.data();
   if (call.count > 0) samples_(&call);
   report(call, status, 0);
-  if (call.count < count && call.failed_check < 0 && !status.cancel) {
+  if (call.count < count && call.failed_check < 0 && !status.stopped()) {
     run_tail(call, status, call.scratch + arrays, call.count, count - call.count);
   }
 }

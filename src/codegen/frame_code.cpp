@@ -68,17 +68,23 @@ void FrameCode::run(FrameState& state, RunStatus& status) const {
     if (finished) return;
     wanted_ = true;
   }
-  if (const KernelEntry entry = compiled()) {
+  if (const KernelEntry entry = compiled(status)) {
     run_compiled(entry, state, status);
   } else {
     interpret_frame(part_, state, status);
   }
 }
 
-KernelEntry FrameCode::compiled() const {
-  std::call_once(once_, [this] { code_ = compile_(part_); });
-  if (!code_) return nullptr;
-  return reinterpret_cast<KernelEntry>(const_cast<void*>(code_->find(frame_symbol)));
+KernelEntry FrameCode::compiled(const RunStatus& status) const {
+  std::call_once(once_, [this] {
+    code_ = std::async(std::launch::async, [this] { return compile_(part_); }).share();
+  });
+  // LLVM cannot be interrupted, but whoever waits for it can.
+  while (code_.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready)
+    if (status.stopped()) return nullptr;
+  const std::optional<CodeObject>& code = code_.get();
+  if (!code) return nullptr;
+  return reinterpret_cast<KernelEntry>(const_cast<void*>(code->find(frame_symbol)));
 }
 
 void FrameCode::run_compiled(KernelEntry entry, FrameState& state, RunStatus& status) const {
@@ -96,7 +102,7 @@ void FrameCode::run_compiled(KernelEntry entry, FrameState& state, RunStatus& st
   call.uniforms = state.uniforms.data();
   call.frame_arrays = state.arrays.data();
   call.frame_lengths = state.array_lengths.data();
-  call.cancel = &status.cancel;
+  call.cancel = &status.stop();
   call.externals = state.externals.data();
   entry(&call);
   report(call, status, 0);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -27,7 +28,9 @@ class FrameCode {
   void run(FrameState& state, RunStatus& status) const;
 
  private:
-  KernelEntry compiled() const;  // compiles when first called; null: it cannot be done
+  // Starts compiling when first called, and waits for it; null: it cannot be done, or `status` is
+  // stopped.
+  KernelEntry compiled(const RunStatus& status) const;
   void run_compiled(KernelEntry entry, FrameState& state, RunStatus& status) const;
 
   passes::SplitModule part_;  // the frame function and what it calls
@@ -37,7 +40,7 @@ class FrameCode {
   mutable std::atomic<bool> wanted_;               // compiled code
   mutable std::atomic<std::int64_t> spent_us_{0};  // interpreting, in all runs
   mutable std::once_flag once_;
-  mutable std::optional<CodeObject> code_;
+  mutable std::shared_future<std::optional<CodeObject>> code_;  // the last: it uses the others
 };
 
 // Notes the first failed check of a call. `first` is the index of the call's first sample.

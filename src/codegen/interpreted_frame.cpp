@@ -23,7 +23,7 @@ ArrayPlaces place_arrays(const std::vector<ir::Array>& arrays, float* frame,
       continue;
     }
     places.views.push_back({sample, &places.sample_lengths[i]});
-    sample += floats_of(arrays[i]);
+    if (sample != nullptr) sample += floats_of(arrays[i]);
   }
   return places;
 }
@@ -61,7 +61,7 @@ bool interpret_frame(const passes::SplitModule& split, FrameState& state, RunSta
   const ir::Environment environment{.inputs = state.uniforms,
                                     .arrays = places.views,
                                     .external = &external,
-                                    .cancel = &status.cancel,
+                                    .cancel = &status.stop(),
                                     .max_turns = max_turns};
   std::vector<ir::Bits> slots(function.body.yields.size());
   ir::Interpreter interpreter(module);

@@ -62,12 +62,12 @@ class InterpretedKernel final : public Kernel {
     const ir::Environment environment{.inputs = uniforms,
                                       .arrays = places.views,
                                       .external = &external,
-                                      .cancel = &status.cancel};
+                                      .cancel = &status.stop()};
     ir::Interpreter interpreter(module);
     std::vector<ir::Bits> results(module.outputs.size());
     for (std::int64_t sample = 0; sample < count; ++sample) {
       // Samples do not end by themselves where nothing loops, so the flag is polled here too.
-      if (status.cancel.load(std::memory_order_relaxed)) return;
+      if (status.stopped()) return;
       for (std::size_t i = 0; i < module.inputs.size(); ++i) {
         if (module.inputs[i].rate == ir::Rate::sample && inputs[i]) uniforms[i] = inputs[i][sample];
       }

@@ -35,9 +35,15 @@ struct FrameState {
 
 // How a run ended early. `check` is the index of the first failed Module::checks entry seen, or -1.
 struct RunStatus {
-  std::atomic<bool> cancel{false};  // set by anyone to stop; polled by every loop
+  std::atomic<bool> cancel{false};  // set by anyone to stop
+  // The run that this one is a part of, if any: it is stopped with it, and not by itself.
+  const RunStatus* outer = nullptr;
   std::atomic<std::int32_t> failed_check{-1};
   std::atomic<std::uint32_t> failed_sample{0};  // index within its batch
+
+  // What every loop polls, at each back-edge and before each vector of samples.
+  const std::atomic<bool>& stop() const { return outer != nullptr ? outer->stop() : cancel; }
+  bool stopped() const { return stop().load(std::memory_order_relaxed); }
 };
 
 // One thread's working memory: sample-rate arrays. Grown by Kernel::prepare.

@@ -1,4 +1,5 @@
-// Where a reader gets its bytes: a file, or memory (standard input and pipes are spooled there).
+// Where a reader gets its bytes: a file, or memory. Standard input and pipes are spooled there, and
+// where they bring much to a file without a name in $TMPDIR.
 #pragma once
 
 #include <cstdint>

@@ -76,13 +76,13 @@ Result<DisplayChannels> pick_display_channels(const ImageSpec& spec, const std::
 }
 
 Result<DisplayTransform> DisplayTransform::create(DisplayChannels channels, ColourSpace working,
-                                                  Tone tone, const std::string& ocio_view) {
+                                                  Tone tone, const OcioChoice& ocio) {
   DisplayTransform made;
   made.channels_ = std::move(channels);
   made.tone_ = made.channels_.colour ? tone : Tone::raw;
   if (made.tone_ == Tone::ocio) {
-    auto view = open_ocio_view(working, ocio_view);
-    if (!view) return std::unexpected(view.error());
+    auto view = open_ocio_view(working, ocio);
+    if (!view) return fail(ErrorKind::cannot_write, view.error().message);
     made.view_ = std::move(*view);
     return made;
   }
@@ -111,19 +111,26 @@ void DisplayTransform::row(std::span<const float* const> planes, int width, bool
       pixel[n] = a;
     }
     if (tone_ == Tone::raw) continue;
-    if (view_) {
-      std::array<float, 3> seen = {pixel[0], n == 3 ? pixel[1] : pixel[0],
-                                   n == 3 ? pixel[2] : pixel[0]};
-      view_->apply(seen.data(), 1);
-      std::copy_n(seen.data(), n, pixel);
-      continue;
-    }
+    if (view_) continue;
     if (adapt_) apply(to_display_, pixel, pixel + 1, pixel + 2, 1);
     for (std::size_t i = 0; i < n; ++i) {
       const float light = tone_ == Tone::filmic ? filmic(pixel[i]) : pixel[i];
       pixel[i] = encode(std::min(std::max(light, 0.0f), 1.0f));
     }
   }
+  if (view_) through_view(width, to);
+}
+
+// A row at once, because each call of the view costs more than a pixel does.
+void DisplayTransform::through_view(int width, float* to) const {
+  const std::size_t n = channels_.values.size();
+  const std::size_t step = static_cast<std::size_t>(channels_.count());
+  std::vector<float> seen(3 * static_cast<std::size_t>(width));
+  for (std::size_t x = 0; x < seen.size() / 3; ++x)
+    for (std::size_t c = 0; c < 3; ++c) seen[3 * x + c] = to[x * step + std::min(c, n - 1)];
+  view_->apply(seen.data(), width);
+  for (std::size_t x = 0; x < seen.size() / 3; ++x)
+    std::copy_n(seen.data() + 3 * x, n, to + x * step);
 }
 
 std::uint8_t to_8_bits(float value, float threshold) {

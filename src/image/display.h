@@ -27,9 +27,9 @@ Result<DisplayChannels> pick_display_channels(const ImageSpec& spec, const std::
 
 class DisplayTransform {
  public:
-  // `ocio_view` matters to Tone::ocio only. Fails when there is no such view.
+  // `ocio` matters to Tone::ocio only. Fails when there is no such view.
   static Result<DisplayTransform> create(DisplayChannels channels, ColourSpace working, Tone tone,
-                                         const std::string& ocio_view);
+                                         const OcioChoice& ocio);
 
   const DisplayChannels& channels() const { return channels_; }
   // One row of `width` pixels, interleaved, in display range; values outside [0, 1] are not yet
@@ -39,6 +39,7 @@ class DisplayTransform {
 
  private:
   DisplayTransform() = default;
+  void through_view(int width, float* to) const;
 
   DisplayChannels channels_;
   Tone tone_ = Tone::clip;

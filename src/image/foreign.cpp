@@ -8,6 +8,7 @@
 #include <array>
 
 #include "image/display.h"
+#include "image/foreign_child.h"
 #include "image/module_loader.h"
 #include "image/output_file.h"
 
@@ -148,14 +149,11 @@ class Writer : public ImageWriter, ForeignStream {
 }  // namespace
 
 Result<std::unique_ptr<ImageReader>> open_foreign(const Bytes& bytes, const ReadOptions& options) {
-  auto images = foreign_images();
   const std::string& name = bytes->name();
   const auto unknown = [&](const std::string& why) {
     return fail(ErrorKind::not_an_image, name + " is not an image of a known format" +
                                              (why.empty() ? "" : " (" + why + ")"));
   };
-  if (!images) return unknown(images.error().message);
-
   // What is not a plain file is shown to the library as one.
   std::unique_ptr<MemoryFile> memory;
   std::string path = name;
@@ -165,14 +163,22 @@ Result<std::unique_ptr<ImageReader>> open_foreign(const Bytes& bytes, const Read
     path = memory->path();
   }
   std::string error;
-  std::unique_ptr<ForeignReader> file((*images)->open(path, error));
+  // Loaded here, so that not every child has to.
+  const auto images = foreign_images();
+  if (!images) return unknown(images.error().message);
+  std::unique_ptr<ForeignReader> file = open_in_child(
+      [&](std::string& problem) {
+        return std::unique_ptr<ForeignReader>((*images)->open(path, problem));
+      },
+      bytes->size(), error);
   if (!file) return unknown(error);
 
   const ImageSpec& spec = file->spec;
   if (spec.data.width() < 1 || spec.data.height() < 1 || spec.channels.empty())
     return fail(ErrorKind::damaged, name + " has no pixels");
   const double pixels = double(spec.data.width()) * double(spec.data.height());
-  if (pixels > double(options.limits.max_pixels) ||
+  const double row = double(spec.data.width()) * double(spec.channels.size() * sizeof(float));
+  if (pixels > double(options.limits.max_pixels) || row > double(1 << 26) ||
       static_cast<int>(spec.channels.size()) > options.limits.max_channels)
     return fail(ErrorKind::too_large,
                 name + " claims more pixels or channels than the limits allow");
@@ -214,7 +220,7 @@ Result<std::unique_ptr<ImageWriter>> open_foreign_writer(const std::string& path
   layout.quality = options.quality;
 
   auto transform = DisplayTransform::create(std::move(*chosen), options.working,
-                                            light ? Tone::raw : options.tone, options.ocio_view);
+                                            light ? Tone::raw : options.tone, options.ocio);
   if (!transform) return std::unexpected(transform.error());
   auto file = OutputFile::create(path, options.sync);
   if (!file) return std::unexpected(file.error());

@@ -1,6 +1,7 @@
 // Formats that are neither EXR nor PNG: TIFF, JPEG, HDR, TGA and whatever else OpenImageIO knows.
 // That library takes 400 ms and 130 MB to load, so it stands in a shared module of its own
-// (modules/oiio.cpp), opened when such a file first comes.
+// (modules/oiio.cpp), opened when such a file first comes: to read in a process of its own
+// (foreign_child.h), to write in ours.
 #pragma once
 
 #include "image/reader.h"

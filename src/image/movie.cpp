@@ -89,7 +89,7 @@ Result<std::unique_ptr<ImageWriter>> Movie::next_frame(const ImageSpec& spec) {
   ImageSpec framed = spec;
   framed.data = framed.display = {0, 0, size_.width(), size_.height()};
   auto transform = DisplayTransform::create(std::move(*chosen), options_.working, options_.tone,
-                                            options_.ocio_view);
+                                            options_.ocio);
   if (!transform) return std::unexpected(transform.error());
   auto frame = std::make_unique<Frame>(framed, *this, std::move(*transform));
   if (spec.data == spec.display) return frame;

@@ -15,7 +15,7 @@ struct MovieOptions {
   double frames_per_second = 24;
   ColourSpace working = ColourSpace::lin_rec709;
   Tone tone = Tone::clip;
-  std::string ocio_view;
+  OcioChoice ocio;  // of Tone::ocio
   bool dither = true;
   int quality = 18;  // ffmpeg's crf: 0 is lossless, 51 the worst
   std::string program = "ffmpeg";

@@ -6,20 +6,17 @@
 namespace pse::image {
 
 Result<std::shared_ptr<const OcioView>> open_ocio_view(ColourSpace working,
-                                                       const std::string& name) {
+                                                       const OcioChoice& choice) {
   static const Result<OcioViews*> views = []() -> Result<OcioViews*> {
     const auto entry = load_module("pse_ocio", ocio_views_entry);
     if (!entry) return std::unexpected(entry.error());
     return reinterpret_cast<OcioViewsEntry>(*entry)();
   }();
-  if (!views) return fail(ErrorKind::cannot_write, views.error().message);
-  const auto slash = name.find('/');
-  const std::string display = slash == std::string::npos ? "" : name.substr(0, slash);
-  const std::string view = slash == std::string::npos ? name : name.substr(slash + 1);
+  if (!views) return std::unexpected(views.error());
   std::string error;
-  std::shared_ptr<const OcioView> made((*views)->create(working, display, view, error));
-  if (!made)
-    return fail(ErrorKind::cannot_write, "the colour configuration cannot be used: " + error);
+  bool unknown = false;
+  std::shared_ptr<const OcioView> made((*views)->create(working, choice, error, unknown));
+  if (!made) return fail(unknown ? ErrorKind::bad_request : ErrorKind::cannot_read, error);
   return made;
 }
 

@@ -11,6 +11,12 @@
 
 namespace pse::image {
 
+// A view of a display, by the configuration's names; empty: its default.
+struct OcioChoice {
+  std::string display, view;
+  friend bool operator==(const OcioChoice&, const OcioChoice&) = default;
+};
+
 // What crosses the border to the module: pure virtual functions.
 struct OcioView {
   virtual ~OcioView() = default;
@@ -19,14 +25,17 @@ struct OcioView {
 };
 struct OcioViews {
   virtual ~OcioViews() = default;
-  virtual OcioView* create(ColourSpace working, const std::string& display, const std::string& view,
-                           std::string& error) = 0;
+  // Null, with a sentence, when there is none; `unknown`: because the configuration has no such
+  // name.
+  virtual OcioView* create(ColourSpace working, const OcioChoice& choice, std::string& error,
+                           bool& unknown) = 0;
 };
 using OcioViewsEntry = OcioViews* (*)();
 inline constexpr const char* ocio_views_entry = "pse_ocio_views";
 
-// `name` is "view" or "display/view"; empty: the configuration's default.
+// The error is bad_request for a name that the configuration does not have, and lists those that it
+// has; cannot_read when there is no configuration to be read; unsupported without OpenColorIO.
 Result<std::shared_ptr<const OcioView>> open_ocio_view(ColourSpace working,
-                                                       const std::string& name);
+                                                       const OcioChoice& choice);
 
 }  // namespace pse::image

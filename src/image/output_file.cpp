@@ -14,22 +14,12 @@
 #include <filesystem>
 #include <utility>
 
+#include "image/plain_file.h"
+
 namespace pse::image {
 namespace {
 
 constexpr std::size_t buffer_bytes = std::size_t{1} << 18;
-
-// Writes everything; false with errno set when the system refuses.
-bool write_all(int file, const char* from, std::size_t count) {
-  while (count > 0) {
-    const ssize_t put = ::write(file, from, count);
-    if (put < 0 && errno == EINTR) continue;
-    if (put < 0) return false;
-    from += put;
-    count -= static_cast<std::size_t>(put);
-  }
-  return true;
-}
 
 ImageError write_error(const std::string& name, int code) {
   const bool full = code == ENOSPC || code == EDQUOT || code == EFBIG;
@@ -91,18 +81,12 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool sync) {
   }
 
   // Open the temporary: without a name where that is possible, else under a name of its own.
-  std::string folder = folder_of(out.target_);
+  const std::string folder = out.target_.empty() ? temporary_folder() : folder_of(out.target_);
   if (out.target_.empty()) {
-    const char* chosen = std::getenv("TMPDIR");
-    folder = chosen != nullptr && *chosen != '\0' ? chosen : "/tmp";
-  }
-  out.file_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
-  if (out.file_ < 0) {
-    if (out.target_.empty()) {
-      std::string pattern = folder + "/pse-XXXXXX";
-      out.file_ = ::mkostemp(pattern.data(), O_CLOEXEC);
-      if (out.file_ >= 0) ::unlink(pattern.c_str());
-    } else {
+    out.file_ = nameless_file();
+  } else {
+    out.file_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+    if (out.file_ < 0) {
       out.temporary_ = temporary_name(out.target_);
       out.file_ = ::open(out.temporary_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
       if (out.file_ < 0) out.temporary_.clear();
@@ -219,6 +203,11 @@ Result<void> OutputFile::commit() {
     return {};
   }
 
+  // Let the content reach the disk, while it has no name that could remain.
+  const auto reached_disk = [&] { return !sync_ || ::fsync(file_) == 0 || errno == EINVAL; };
+  if (mode_ != 0 && ::fchmod(file_, mode_) != 0) return refuse(errno);
+  if (!reached_disk()) return refuse(errno);
+
   // Give the temporary a name. Where an unnamed file cannot get one, copy it to a file that has
   // one.
   if (temporary_.empty()) {
@@ -234,12 +223,12 @@ Result<void> OutputFile::commit() {
       const int code = errno;
       ::close(std::exchange(file_, named));
       if (!copied) return refuse(code);
+      if (mode_ != 0 && ::fchmod(file_, mode_) != 0) return refuse(errno);
+      if (!reached_disk()) return refuse(errno);
     }
   }
 
-  // Let the content reach the disk before it takes the target's place.
-  if (mode_ != 0 && ::fchmod(file_, mode_) != 0) return refuse(errno);
-  if (sync_ && ::fsync(file_) != 0 && errno != EINVAL) return refuse(errno);
+  // Take the target's place.
   const int file = std::exchange(file_, -1);
   if (::close(file) != 0 && errno != EINTR) return refuse(errno);
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) return refuse(errno);

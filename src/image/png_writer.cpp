@@ -138,7 +138,7 @@ Result<std::unique_ptr<ImageWriter>> open_png_writer(const std::string& path, co
   auto chosen = pick_display_channels(spec, path);
   if (!chosen) return std::unexpected(chosen.error());
   auto transform = DisplayTransform::create(std::move(*chosen), options.working, options.tone,
-                                            options.ocio_view);
+                                            options.ocio);
   if (!transform) return std::unexpected(transform.error());
   auto file = OutputFile::create(path, options.sync);
   if (!file) return std::unexpected(file.error());

@@ -48,6 +48,10 @@ class Texture {
   // at it. Between powers of two the level is chosen linearly in `size`. Where u or v is NaN or
   // infinite the result is 0.
   void look_up(float u, float v, float size, Filter filter, Wrap wrap, float* result) const;
+  // Makes now what the filter would make at its first lookup: of a large image that takes a second.
+  void prepare(Filter filter) const {
+    if (filter == Filter::mipmap) pyramid();
+  }
 
  private:
   struct Level {

@@ -13,6 +13,7 @@
 #include "image/colour.h"
 #include "image/error.h"
 #include "image/image.h"
+#include "image/ocio.h"
 
 namespace pse::image {
 
@@ -28,7 +29,7 @@ struct WriteOptions {
   ColourSpace working = ColourSpace::lin_rec709;
   // PNG, JPEG and the like
   Tone tone = Tone::clip;
-  std::string ocio_view;  // of Tone::ocio: "view" or "display/view"; empty: the default
+  OcioChoice ocio;        // of Tone::ocio
   int bits = 8;           // 8 or 16
   bool dither = true;
   int quality = 95;  // of lossy formats

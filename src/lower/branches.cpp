@@ -41,6 +41,15 @@ bool always_sets(const lang::Block& block, const std::string& name) {
 
 void Lowering::branch(ir::Value condition, const std::function<void()>& if_true, const std::function<void()>& if_false,
                       const Span& span) {
+  // An `else` of an `else` is a region in a region, and all that walk through them recurse.
+  constexpr int deepest = 500;
+  if (branch_depth_ == deepest) {
+    error("too-deep", span, "more than 500 branches lie within each other here",
+          "a table is an array, or a texture");
+    throw TooLarge{};
+  }
+  ++branch_depth_;
+
   // Lower both sides, each from the same variables.
   const Variables before = variables();
   ir::Region then_region, else_region;
@@ -52,6 +61,7 @@ void Lowering::branch(ir::Value condition, const std::function<void()>& if_true,
   if_false();
   builder_->end_region();
   Variables after_else = std::exchange(variables(), before);
+  --branch_depth_;
 
   // Bring each changed variable to one shape on both sides.
   struct Merge {

@@ -282,6 +282,9 @@ void Lowering::read_meta(Knob& knob, const AssignStmt& assign) {
 
 // ---- Outputs ----------------------------------------------------------------------------------------------------
 
+// As many channels as a reader takes (image/reader.h); the compiler's time grows with their square.
+constexpr std::size_t most_outputs = 1024;
+
 void Lowering::make_outputs(Lowered& result) {
   for (const std::string& name : output_order_) {
     // Single capitals are layers with names that pictures have always used: N, P, Z.
@@ -303,6 +306,11 @@ void Lowering::make_outputs(Lowered& result) {
       result.outputs.pop_back();
       continue;
     }
+    if (module_.outputs.size() + value.parts.size() > most_outputs)
+      return error("too-many-outputs", set_at_top_[name],
+                   "the program sets more than " + std::to_string(most_outputs) +
+                       " numbers up to here, which is as many channels as an image has",
+                   "a name that begins with `_` is not put out");
     for (int c = 0; c < value.components(); ++c) {
       module_.outputs.push_back({value.components() == 1 ? name : name + "." + std::to_string(c)});
       builder_->function().body.yields.push_back(value.parts[static_cast<std::size_t>(c)]);

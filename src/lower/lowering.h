@@ -210,6 +210,7 @@ class Lowering {
   int frame_blocks_ = 0;  // `if begin_frame` around here
   int depth_ = 0;
   int loop_depth_ = 0;
+  int branch_depth_ = 0;
 };
 
 }  // namespace pse::lower

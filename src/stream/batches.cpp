@@ -1,5 +1,5 @@
 // A oneTBB pipeline of three stages (next batch, fill and compute, drain) with a fixed set of
-// buffers, and a watcher thread that passes on cancellation and reports progress.
+// buffers, a watcher thread that passes on cancellation, and one that reports progress.
 #include "stream/batches.h"
 
 #include <oneapi/tbb/global_control.h>
@@ -48,6 +48,8 @@ class Run {
   BatchEnd go() {
     {
       const std::jthread watcher([this](std::stop_token stop) { watch(stop); });
+      std::jthread reporter;
+      if (plan_.progress) reporter = std::jthread([this](std::stop_token stop) { report(stop); });
       run_pipeline();
     }
     if (thrown_) std::rethrow_exception(thrown_);
@@ -170,27 +172,36 @@ class Run {
   }
 
   bool skipped(std::int64_t batch) const {
-    return stop_ || status_.cancel || batch >= first_failed_;
+    return stop_ || status_.stopped() || batch >= first_failed_;
   }
 
   // Cancellation reaches the kernels through each slot's own status, so that a failure in one batch
   // leaves the place of a failure in another alone.
   void watch(const std::stop_token& stop) {
+    every(watch_interval, stop, [this] {
+      if (stop_ || status_.stopped())
+        for (const auto& slot : slots_) slot->status.cancel = true;
+    });
+  }
+
+  // Apart from watch(), because a report may take its time: it may write a snapshot.
+  void report(const std::stop_token& stop) {
+    every(report_interval, stop, [this] {
+      if (stop_ || status_.stopped()) return;
+      guard([&] {
+        plan_.progress(static_cast<double>(drained_) / static_cast<double>(plan_.batches));
+      });
+    });
+  }
+
+  template <class Work>
+  static void every(std::chrono::milliseconds interval, const std::stop_token& stop, Work work) {
     std::mutex mutex;
     std::condition_variable_any wake;
     std::unique_lock lock(mutex);
-    auto reported = std::chrono::steady_clock::now();
     while (!stop.stop_requested()) {
-      wake.wait_for(lock, stop, watch_interval, [] { return false; });
-      if (stop_ || status_.cancel)
-        for (const auto& slot : slots_) slot->status.cancel = true;
-      const auto now = std::chrono::steady_clock::now();
-      if (plan_.progress && !stop.stop_requested() && now - reported >= report_interval) {
-        reported = now;
-        guard([&] {
-          plan_.progress(static_cast<double>(drained_) / static_cast<double>(plan_.batches));
-        });
-      }
+      wake.wait_for(lock, stop, interval, [] { return false; });
+      if (!stop.stop_requested()) work();
     }
   }
 

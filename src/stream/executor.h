@@ -54,8 +54,10 @@ struct RunResult {
 };
 
 // `state` must be filled for the frame (uniforms of knobs and frame names, externals); this runs
-// the frame function. Setting status.cancel stops within 50 ms. Exceptions of source and sink stop
-// the run and are thrown again from here. The result does not depend on tile size or threads.
+// the frame function. Setting status.cancel stops within 50 ms: each turn of a loop and each vector
+// of samples looks at it, and a call of source or sink that has begun is waited for. Exceptions of
+// source and sink stop the run and are thrown again from here. The result does not depend on tile
+// size or threads.
 RunResult execute(const Program& program, FrameState& state, const TileSource& source,
                   const TileSink& sink, const ExecuteOptions& options, RunStatus& status);
 

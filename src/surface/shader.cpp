@@ -24,6 +24,20 @@ std::size_t index_of(std::vector<Entry>& entries, const Entry& entry) {
   return entries.size() - 1;
 }
 
+// The run that this thread works for, so that what a ray meets is stopped with it.
+thread_local const RunStatus* current_run = nullptr;
+
+class CurrentRun {
+ public:
+  explicit CurrentRun(const RunStatus& run) : before_(std::exchange(current_run, &run)) {}
+  ~CurrentRun() { current_run = before_; }
+  CurrentRun(const CurrentRun&) = delete;
+  CurrentRun& operator=(const CurrentRun&) = delete;
+
+ private:
+  const RunStatus* before_;
+};
+
 }  // namespace
 
 Shader::Shader(std::vector<std::shared_ptr<const Program>> programs, std::vector<int> program_of,
@@ -125,6 +139,7 @@ void Shader::begin_frame(std::vector<FrameState> states) {
 int Shader::width() const { return parts_.empty() ? 1 : parts_.front().program->kernel->width(); }
 
 void Shader::run_frame(FrameState& state, RunStatus& status) const {
+  const CurrentRun running(status);
   state.uniforms.resize(split_->module.inputs.size());
   for (std::size_t k = 0; k < parts_.size() && status.failed_check < 0; ++k) {
     parts_[k].program->kernel->run_frame(states_[k], status);
@@ -136,6 +151,7 @@ void Shader::run_frame(FrameState& state, RunStatus& status) const {
 void Shader::run_samples(const FrameState&, RunStatus& status, Scratch&,
                          const float* const* inputs, float* const* outputs,
                          std::int64_t count) const {
+  const CurrentRun running(status);
   const float* ids = inputs[id_input_];
   std::vector<std::vector<std::uint32_t>> which(parts_.size());
   for (std::int64_t i = 0; i < count; ++i) {
@@ -218,7 +234,7 @@ void Shader::radiance(std::span<const Ray> rays, double begin_width, float* cons
   const Planes inputs(std::vector<bool>(module.inputs.size(), true), count);
   names_->write(sightings, hits, inputs.pointers(), shades_background());
   const Planes outputs(std::vector<bool>(module.outputs.size(), true), count);
-  RunStatus status;
+  RunStatus status{.outer = current_run};
   Scratch scratch;
   ++depth;
   run_samples({}, status, scratch, inputs.pointers().data(), outputs.pointers().data(), count);

@@ -1,67 +1,22 @@
 // The compiler's promise: interpreter and kernels give the same bits at every width, NaN and infinity included. Held on
 // random programs: each runs in the interpreter without any pass, and compiled after all passes. Every tenth program is
-// large and runs at every width; the small ones between take the widths in turn, so that each width sees thousands.
+// large and runs at every width; the small ones between take the widths in turn, so that each width sees thousands. Each
+// compiled program runs a second time by the executor, with thread counts, tile sizes and orders of tiles in turn.
 // PSE_RANDOM_PROGRAMS sets how many (default 10000); PSE_RANDOM_FIRST the first seed.
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <bit>
 #include <cstdlib>
-#include <limits>
 #include <mutex>
 #include <thread>
 
 #include "ir/verifier.h"
 #include "stream/program.h"
+#include "support/agreement.h"
 #include "support/random_program.h"
 
 namespace pse::test {
 namespace {
-
-constexpr std::int64_t samples = 37;  // more than two of the widest vectors, and a rest
-constexpr std::size_t padded = 48;
-
-// What the stream brings: plain coordinates at first, then edges of the number line.
-float input_value(std::uint64_t seed, std::size_t input, std::size_t sample) {
-  std::uint64_t z = seed * 0x9e3779b97f4a7c15u + input * 0xbf58476d1ce4e5b9u + sample * 0x94d049bb133111ebu;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  z ^= z >> 31;
-  static constexpr float edges[] = {0.0f, -0.0f, 1.0f, -1.0f, std::numeric_limits<float>::infinity(),
-                                    -std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN(),
-                                    std::numeric_limits<float>::denorm_min(), std::numeric_limits<float>::max(),
-                                    16777217.0f, 255.5f, -3.0f};
-  if (sample % 5 == 4) return edges[z % std::size(edges)];
-  return static_cast<float>(static_cast<double>(z >> 40) / (1 << 24) * 4 - 2);
-}
-
-struct Result {
-  std::vector<std::vector<float>> outputs;
-  bool failed = false;
-};
-
-Result run(const Kernel& kernel, const ir::Module& module, std::uint64_t seed) {
-  Result result;
-  FrameState state;
-  std::vector<std::vector<float>> inputs(module.inputs.size());
-  std::vector<const float*> in;
-  std::vector<float*> out;
-  for (std::size_t i = 0; i < module.inputs.size(); ++i) {
-    // Values go by name, so that every build of a program gets the same.
-    const std::size_t name = std::hash<std::string>{}(module.inputs[i].name);
-    state.uniforms.push_back(input_value(seed, name, 0));
-    for (std::size_t s = 0; s < padded; ++s) inputs[i].push_back(input_value(seed, name, s));
-    in.push_back(module.inputs[i].rate == ir::Rate::sample ? inputs[i].data() : nullptr);
-  }
-  for (std::size_t o = 0; o < module.outputs.size(); ++o) result.outputs.emplace_back(padded, 0.0f);
-  for (auto& plane : result.outputs) out.push_back(plane.data());
-  RunStatus status;
-  Scratch scratch;
-  kernel.run_frame(state, status);
-  if (status.failed_check < 0) kernel.run_samples(state, status, scratch, in.data(), out.data(), samples);
-  result.failed = status.failed_check >= 0;
-  return result;
-}
 
 // `apart`: every call becomes a function again, which only large programs see otherwise.
 std::shared_ptr<const Program> build(const std::string& text, bool optimize, bool apart, std::string& problem) {
@@ -90,18 +45,27 @@ std::shared_ptr<const Program> build(const std::string& text, bool optimize, boo
   return complaint.empty() ? program : nullptr;
 }
 
-// The first difference between two runs, or nothing.
-std::string difference(const Result& expected, const Result& got) {
-  if (expected.failed != got.failed) return expected.failed ? "a check should have failed" : "a check failed";
-  if (expected.failed) return {};
-  for (std::size_t o = 0; o < expected.outputs.size(); ++o)
-    for (std::size_t s = 0; s < samples; ++s) {
-      const float a = expected.outputs[o][s], b = got.outputs[o][s];
-      if (std::bit_cast<std::uint32_t>(a) != std::bit_cast<std::uint32_t>(b))
-        return "output " + std::to_string(o) + ", sample " + std::to_string(s) + ": " + std::to_string(b) +
-               " instead of " + std::to_string(a);
-    }
-  return {};
+AgreementResult run(const Kernel& kernel, const ir::Module& module, std::uint64_t seed) {
+  RunStatus status;
+  return run_kernel(kernel, module, seed, status);
+}
+
+// The compiled program on some number of threads, in tiles of some size: the same for the same seed.
+std::string check_tiles(const Program& program, std::unique_ptr<Kernel> kernel,
+                        const AgreementResult& expected, std::uint64_t seed, std::size_t w) {
+  Program compiled = program;
+  compiled.kernel = std::move(kernel);
+  static constexpr int tile_widths[] = {1, 5, agreement_width}, tile_heights[] = {2, 1, 3, 64};
+  const std::uint64_t turn = seed / 4 + w;
+  const ExecuteOptions how{.tile_width = tile_widths[turn % 3],
+                           .tile_height = tile_heights[turn % 4],
+                           .threads = static_cast<int>(turn % 5) + 1,
+                           .ordered_sink = turn % 2 == 0};
+  RunStatus status;
+  const std::string d = difference(expected, run_tiles(compiled, seed, how, status));
+  if (d.empty()) return d;
+  return "tiles of " + std::to_string(how.tile_width) + "x" + std::to_string(how.tile_height) +
+         " on " + std::to_string(how.threads) + " threads differ: " + d;
 }
 
 std::string check_program(std::uint64_t seed) {
@@ -114,7 +78,7 @@ std::string check_program(std::uint64_t seed) {
   const auto plain = build(text, false, false, problem);
   const auto optimised = plain ? build(text, true, seed % 2 == 0, problem) : nullptr;
   if (!plain || !optimised) return fail("does not compile: " + problem);
-  const Result expected = run(*plain->kernel, plain->module(), seed);
+  const AgreementResult expected = run(*plain->kernel, plain->module(), seed);
   if (const std::string d = difference(expected, run(*optimised->kernel, optimised->module(), seed)); !d.empty())
     return fail("the passes change it: " + d);
   static constexpr int widths[] = {16, 8, 4, 1};
@@ -126,10 +90,13 @@ std::string check_program(std::uint64_t seed) {
                                  .optimize = seed % 8 < 4,
                                  .compile_frame = seed % 3 != 0,  // else interpreted, as short frames are
                                  .cache = {}};
-    const auto kernel = compile_kernel(*optimised->split, options);
+    auto kernel = compile_kernel(*optimised->split, options);
     if (!kernel) return fail(kernel.error());
+    const std::string at_width = "width " + std::to_string(width);
     if (const std::string d = difference(expected, run(**kernel, optimised->module(), seed)); !d.empty())
-      return fail("width " + std::to_string(width) + " differs: " + d);
+      return fail(at_width + " differs: " + d);
+    if (const std::string d = check_tiles(*optimised, std::move(*kernel), expected, seed, w); !d.empty())
+      return fail(at_width + ", " + d);
   }
   return {};
 }

@@ -87,6 +87,38 @@ TEST(Foreign, DamageIsSaid) {
   }
 }
 
+// An SGI file of 4 x 1 pixels whose run of pixels is longer than its row: OpenImageIO's reader ends the
+// process it is in.
+TEST(Foreign, AReaderThatBreaksDownIsSaid) {
+  PSE_NEEDS_MODULE();
+  Folder folder;
+  const auto sgi = [](const Content& runs) {
+    Content file = {0x01, 0xda, 1, 1, 0, 2, 0, 4, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 255};
+    file.resize(512);
+    const auto size = static_cast<unsigned char>(runs.size());
+    for (const Content& table : {Content{0, 0, 2, 16}, Content{0, 0, 2, 16},
+                                 Content{0, 0, 0, size}, Content{0, 0, 0, size}})
+      file.insert(file.end(), table.begin(), table.end());
+    file.insert(file.end(), runs.begin(), runs.end());
+    return file;
+  };
+  put_content(folder / "good.sgi", sgi({0x84, 0, 85, 170, 255, 0}));
+  ReadOptions stored;
+  stored.working.reset();
+  const auto good = read_image(folder / "good.sgi", stored);
+  ASSERT_TRUE(good) << message_of(good);
+  EXPECT_EQ(good->planes[0], (std::vector<float>{0, 85 / 255.0f, 170 / 255.0f, 1}));
+  put_content(folder / "bad.sgi", sgi({0x7f, 9, 0x7f, 9, 0}));
+  for (int i = 0; i < 2; ++i) {
+    const auto bad = read_image(folder / "bad.sgi", stored);
+    ASSERT_FALSE(bad);
+    EXPECT_EQ(bad.error().kind, ErrorKind::damaged);
+    EXPECT_NE(bad.error().message.find("broke down"), std::string::npos) << bad.error().message;
+  }
+  // The next file is read as ever.
+  EXPECT_TRUE(read_image(folder / "good.sgi", stored));
+}
+
 TEST(Foreign, AFullDiskLeavesTheOldFile) {
   PSE_NEEDS_MODULE();
   for (const char* name : {"a.jpg", "a.tif", "a.hdr", "a.tga", "a.ppm", "a.bmp"}) {

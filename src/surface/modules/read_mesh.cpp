@@ -5,13 +5,13 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fcntl.h>
-#include <signal.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <assimp/Importer.hpp>
 #include <filesystem>
+
+#include "base/side_process.h"
 
 namespace pse::surface {
 namespace {
@@ -69,63 +69,14 @@ std::string read_here(const std::string& file, Mesh& mesh) {
   }
 }
 
-bool put(int pipe, const void* data, std::size_t bytes) {
-  const char* at = static_cast<const char*>(data);
-  while (bytes > 0) {
-    const ssize_t done = ::write(pipe, at, bytes);
-    if (done <= 0) return false;
-    at += done, bytes -= static_cast<std::size_t>(done);
-  }
-  return true;
-}
-
-bool get(int pipe, void* data, std::size_t bytes) {
-  char* at = static_cast<char*>(data);
-  while (bytes > 0) {
-    const ssize_t done = ::read(pipe, at, bytes);
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) return false;
-    at += done, bytes -= static_cast<std::size_t>(done);
-  }
-  return true;
-}
-
-template <class Values>
-bool put_all(int pipe, const Values& values) {
-  const std::uint64_t count = values.size();
-  return put(pipe, &count, sizeof count) &&
-         put(pipe, values.data(), count * sizeof(typename Values::value_type));
-}
-
-template <class Values>
-bool get_all(int pipe, Values& values) {
-  constexpr std::uint64_t most = std::uint64_t{1} << 30;
-  std::uint64_t count = 0;
-  if (!get(pipe, &count, sizeof count) || count > most) return false;
-  values.resize(count);
-  return get(pipe, values.data(), count * sizeof(typename Values::value_type));
-}
-
-void limit(__rlimit_resource which, rlim_t most) {
-  const rlimit value{most, most};
-  ::setrlimit(which, &value);
-}
-
 // Never returns.
 [[noreturn]] void run_child(int pipe, const std::string& file, rlim_t seconds) {
-  limit(RLIMIT_AS, most_memory), limit(RLIMIT_CORE, 0), limit(RLIMIT_CPU, seconds);
-  for (const int signal : {SIGINT, SIGTERM, SIGABRT, SIGSEGV, SIGXCPU, SIGBUS, SIGFPE})
-    ::signal(signal, SIG_DFL);
-  sigset_t none;
-  ::sigemptyset(&none);
-  ::sigprocmask(SIG_SETMASK, &none, nullptr);
-  const int nowhere = ::open("/dev/null", O_WRONLY);
-  ::dup2(nowhere, STDERR_FILENO), ::dup2(nowhere, STDOUT_FILENO);
+  side::settle(most_memory, seconds);
   Mesh mesh;
   const std::string error = read_here(file, mesh);
-  const bool sent = put_all(pipe, error) && put_all(pipe, mesh.positions) &&
-                    put_all(pipe, mesh.normals) && put_all(pipe, mesh.uvs) &&
-                    put_all(pipe, mesh.triangles);
+  const bool sent = side::put_all(pipe, error) && side::put_all(pipe, mesh.positions) &&
+                    side::put_all(pipe, mesh.normals) && side::put_all(pipe, mesh.uvs) &&
+                    side::put_all(pipe, mesh.triangles);
   ::_exit(sent ? 0 : 1);
 }
 
@@ -143,9 +94,9 @@ bool read_in_child(const std::string& file, Mesh& mesh, std::string& error) {
   }
   if (child == 0) run_child(ends[1], file, 5 + megabytes);
   ::close(ends[1]);
-  const bool whole = get_all(ends[0], error) && get_all(ends[0], mesh.positions) &&
-                     get_all(ends[0], mesh.normals) && get_all(ends[0], mesh.uvs) &&
-                     get_all(ends[0], mesh.triangles);
+  const bool whole = side::get_all(ends[0], error) && side::get_all(ends[0], mesh.positions) &&
+                     side::get_all(ends[0], mesh.normals) && side::get_all(ends[0], mesh.uvs) &&
+                     side::get_all(ends[0], mesh.triangles);
   ::close(ends[0]);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {

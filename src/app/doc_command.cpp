@@ -51,6 +51,7 @@ const std::vector<Entry>& variables() {
       {"prepass", "prepass.near, prepass.far, prepass.step",
        "where a prepass found matter on the pixel's ray, and what step it looks with; for the marchers",
        "variable"},
+      {"xform", "xform", "the 16 numbers of --xform, row by row", "variable"},
       {"begin_frame", "if begin_frame ...",
        "true where a frame begins: the block is computed once per frame", "variable"},
       {"place", "place", "the surface's place in the world (docs/surfaces.md); `point` is the same "

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/prepass_proof.h"
 #include "app/surfaces.h"
 #include "image/writer.h"
 #include "stream/batches.h"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr float nowhere_near = 1e30f, nowhere_far = -1e30f;
 constexpr int probe_block = 24;  // one probe in a square of so many pixels
+constexpr std::int64_t proof_limit = 2;  // boxes for each pixel of the picture
 
 // A place within a block that looks random and is the same at every run.
 int scattered(int x, int y, int salt, int below) {
@@ -38,13 +40,39 @@ class Prepass {
     checked_.assign(cells, false);
   }
 
-  std::optional<Spans> run() {
-    if (!search_cells() || !follow()) return std::nullopt;
+  std::optional<Spans> run(BoxBounds* bounds) {
+    if (!search_cells()) return std::nullopt;
+    if (bounds != nullptr) {
+      auto proven = prove(*bounds);
+      if (!proven || report_.proven) return proven;
+    }
+    if (!follow()) return std::nullopt;
     if (!probe() || !follow()) return std::nullopt;
     return spans_;
   }
 
  private:
+  // The spans in cells of half the size, with all that is not proven empty; as they are where the
+  // proof takes more boxes than there are pixels.
+  std::optional<Spans> prove(BoxBounds& bounds) {
+    Spans fine;
+    const int parts = spans_.cell % 2 == 0 ? 2 : 1;
+    fine.cell = spans_.cell / parts;
+    fine.width = (width_ + fine.cell - 1) / fine.cell;
+    fine.height = (height_ + fine.cell - 1) / fine.cell;
+    for (int y = 0; y < fine.height; ++y)
+      for (int x = 0; x < fine.width; ++x) {
+        fine.near.push_back(spans_.near[spans_.at(x / parts, y / parts)]);
+        fine.far.push_back(spans_.far[spans_.at(x / parts, y / parts)]);
+      }
+    ProofReport proof;
+    const std::int64_t most = proof_limit * std::int64_t{width_} * height_;
+    if (!add_possible(bounds, width_, height_, most, fine, proof)) return std::nullopt;
+    report_.boxes += proof.boxes;
+    report_.proven = proof.complete;
+    return proof.complete ? fine : spans_;
+  }
+
   // The middle rays of the cells, in coarse steps. Cells twice as large say first where to look.
   bool search_cells() {
     if (spans_.cell < 4) return search_cells_within(nullptr);
@@ -249,9 +277,9 @@ bool SpanSearch::look(std::vector<Ray>& rays, int step) {
   return end.end == RunEnd::finished;
 }
 
-std::optional<Spans> find_spans(SpanSearch& search, int width, int height, int factor,
-                                PrepassReport& report) {
-  auto spans = Prepass(search, width, height, factor, report).run();
+std::optional<Spans> find_spans(SpanSearch& search, BoxBounds* bounds, int width, int height,
+                                int factor, PrepassReport& report) {
+  auto spans = Prepass(search, width, height, factor, report).run(bounds);
   report.evaluations = search.evaluations();
   return spans;
 }

@@ -28,7 +28,11 @@ struct Spans {
   bool widen(std::size_t i, float from, float to);
 };
 
+class BoxBounds;
+
 struct PrepassReport {
+  std::int64_t boxes = 0;     // whose bounds were computed (prepass_proof.h)
+  bool proven = false;        // what is outside the spans is proven empty
   std::int64_t searched = 0;  // rays looked at, of whatever step
   std::int64_t probes = 0;    // pixels looked at step by step, wherever they are
   std::int64_t missed = 0;    // those with matter that the coarse search did not find
@@ -62,10 +66,12 @@ class SpanSearch {
 };
 
 // The whole prepass of one frame: every `factor`th pixel and step, widened by one cell on all
-// sides; then followed wherever matter goes on beyond the cells found; then probed at single pixels
-// for what is too thin to have been seen, which is followed too. Nothing when cancelled or failed.
-std::optional<Spans> find_spans(SpanSearch& search, int width, int height, int factor,
-                                PrepassReport& report);
+// sides. With `bounds`, all that is not proven empty is added, and nothing is missed. Without, or
+// where the proof does not come to an end, what was found is followed wherever matter goes on
+// beyond its cells, then single pixels are probed for what is too thin to have been seen, which is
+// followed too. Nothing when cancelled or failed.
+std::optional<Spans> find_spans(SpanSearch& search, BoxBounds* bounds, int width, int height,
+                                int factor, PrepassReport& report);
 
 // Writes the spans as an image with the pixels of the picture and the channels near and far.
 // Throws Failure (output).

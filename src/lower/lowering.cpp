@@ -20,11 +20,16 @@ Lowering::Lowering(SourceMap& sources, const LowerHost& host, const LowerOptions
 
 void Lowering::error(const char* code, const Span& span, std::string message, std::string suggestion) {
   // In another file's function, the program's own call is the place to look at next.
+  const Span place = program_place(span);
+  if (place != span)
+    suggestion += (suggestion.empty() ? "called from " : "; called from ") + sources_.describe(place);
+  diagnostics_->error(code, span, std::move(message), std::move(suggestion));
+}
+
+Span Lowering::program_place(const Span& span) const {
   const Call* call = span.valid() && span.file != main_.file ? call_ : nullptr;
   while (call && call->call_span.file != main_.file) call = call->caller;
-  if (call && call->call_span.valid())
-    suggestion += (suggestion.empty() ? "called from " : "; called from ") + sources_.describe(call->call_span);
-  diagnostics_->error(code, span, std::move(message), std::move(suggestion));
+  return call && call->call_span.valid() ? call->call_span : span;
 }
 
 void Lowering::warning(const char* code, const Span& span, std::string message, std::string suggestion) {

@@ -14,7 +14,8 @@ namespace {
 
 constexpr float nowhere_near = 1e30f, nowhere_far = -1e30f;
 constexpr int probe_block = 24;  // one probe in a square of so many pixels
-constexpr std::int64_t proof_limit = 2;  // boxes for each pixel of the picture
+// Where the part not proven empty is at most this, the picture marches through all of it.
+constexpr double little = 1.0 / 40;
 
 // A place within a block that looks random and is the same at every run.
 int scattered(int x, int y, int salt, int below) {
@@ -31,57 +32,37 @@ class Prepass {
  public:
   Prepass(SpanSearch& search, int width, int height, int factor, PrepassReport& report)
       : search_(search), width_(width), height_(height), report_(report) {
-    spans_.cell = factor;
-    spans_.width = (width + factor - 1) / factor;
-    spans_.height = (height + factor - 1) / factor;
-    const auto cells = std::size_t(spans_.width) * std::size_t(spans_.height);
-    spans_.near.assign(cells, nowhere_near);
-    spans_.far.assign(cells, nowhere_far);
-    checked_.assign(cells, false);
+    spans_ = Spans::nowhere(width, height, factor);
+    checked_.assign(spans_.near.size(), false);
   }
 
   std::optional<Spans> run(BoxBounds* bounds) {
-    if (!search_cells()) return std::nullopt;
+    std::optional<Possible> possible;
     if (bounds != nullptr) {
-      auto proven = prove(*bounds);
-      if (!proven || report_.proven) return proven;
+      const int finest = spans_.cell % 2 == 0 ? spans_.cell / 2 : spans_.cell;
+      possible = find_possible(*bounds, width_, height_, finest, std::int64_t{width_} * height_);
+      if (!possible) return std::nullopt;
+      report_.boxes += possible->boxes;
+      report_.possible = possible->part;
+      report_.proven = possible->part <= little;
+      if (report_.proven) return std::move(possible->spans);
     }
-    if (!follow()) return std::nullopt;
+    if (!search_cells(possible ? &possible->spans : nullptr) || !follow()) return std::nullopt;
     if (!probe() || !follow()) return std::nullopt;
     return spans_;
   }
 
  private:
-  // The spans in cells of half the size, with all that is not proven empty; as they are where the
-  // proof takes more boxes than there are pixels.
-  std::optional<Spans> prove(BoxBounds& bounds) {
-    Spans fine;
-    const int parts = spans_.cell % 2 == 0 ? 2 : 1;
-    fine.cell = spans_.cell / parts;
-    fine.width = (width_ + fine.cell - 1) / fine.cell;
-    fine.height = (height_ + fine.cell - 1) / fine.cell;
-    for (int y = 0; y < fine.height; ++y)
-      for (int x = 0; x < fine.width; ++x) {
-        fine.near.push_back(spans_.near[spans_.at(x / parts, y / parts)]);
-        fine.far.push_back(spans_.far[spans_.at(x / parts, y / parts)]);
-      }
-    ProofReport proof;
-    const std::int64_t most = proof_limit * std::int64_t{width_} * height_;
-    if (!add_possible(bounds, width_, height_, most, fine, proof)) return std::nullopt;
-    report_.boxes += proof.boxes;
-    report_.proven = proof.complete;
-    return proof.complete ? fine : spans_;
-  }
-
-  // The middle rays of the cells, in coarse steps. Cells twice as large say first where to look.
-  bool search_cells() {
-    if (spans_.cell < 4) return search_cells_within(nullptr);
+  // The middle rays of the cells, in coarse steps. What may hold matter, or cells twice as large,
+  // say first where to look.
+  bool search_cells(const Spans* possible) {
+    if (spans_.cell < 4) return search_cells_within(possible);
     Prepass large(search_, width_, height_, 2 * spans_.cell, report_);
-    return large.search_cells_within(nullptr) && search_cells_within(&large);
+    return large.search_cells_within(possible) && search_cells_within(&large.spans_);
   }
 
   // Each cell takes its neighbours' stretches too.
-  bool search_cells_within(const Prepass* large) {
+  bool search_cells_within(const Spans* within) {
     std::vector<SpanSearch::Ray> rays;
     std::vector<std::pair<int, int>> cells;
     const double n = spans_.cell;
@@ -89,10 +70,10 @@ class Prepass {
       for (int x = 0; x < spans_.width; ++x) {
         SpanSearch::Ray ray{std::min((x + 0.5) * n, width_ - 0.5),
                             std::min((y + 0.5) * n, height_ - 0.5)};
-        if (large != nullptr) {
-          const std::size_t i = large->spans_.at(x / 2, y / 2);
-          if (large->spans_.empty(i)) continue;
-          ray.near = large->spans_.near[i], ray.far = large->spans_.far[i];
+        if (within != nullptr) {
+          const auto [near, far] = stretch(*within, x, y);
+          if (!(near <= far)) continue;
+          ray.near = near, ray.far = far;
         }
         rays.push_back(ray);
         cells.emplace_back(x, y);
@@ -105,6 +86,19 @@ class Prepass {
       if (rays[k].near < rays[k].far)
         spread(cells[k].first, cells[k].second, rays[k].near - reach_, rays[k].far + reach_);
     return true;
+  }
+
+  // What other spans have within a cell.
+  std::pair<float, float> stretch(const Spans& other, int x, int y) const {
+    const int n = spans_.cell;
+    std::pair<float, float> found{nowhere_near, nowhere_far};
+    for (int oy = y * n / other.cell; oy <= std::min(((y + 1) * n - 1) / other.cell, other.height - 1); ++oy)
+      for (int ox = x * n / other.cell; ox <= std::min(((x + 1) * n - 1) / other.cell, other.width - 1); ++ox) {
+        const std::size_t i = other.at(ox, oy);
+        if (other.empty(i)) continue;
+        found = {std::min(found.first, other.near[i]), std::max(found.second, other.far[i])};
+      }
+    return found;
   }
 
   // Gives a stretch to a cell and its neighbours; those that change are to be checked.
@@ -200,6 +194,17 @@ class Prepass {
 };
 
 }  // namespace
+
+Spans Spans::nowhere(int width, int height, int cell) {
+  Spans spans;
+  spans.cell = cell;
+  spans.width = (width + cell - 1) / cell;
+  spans.height = (height + cell - 1) / cell;
+  const auto cells = std::size_t(spans.width) * std::size_t(spans.height);
+  spans.near.assign(cells, nowhere_near);
+  spans.far.assign(cells, nowhere_far);
+  return spans;
+}
 
 bool Spans::widen(std::size_t i, float from, float to) {
   if (near[i] <= from && far[i] >= to) return false;

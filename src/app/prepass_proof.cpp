@@ -115,84 +115,77 @@ void each_cell(const Spans& spans, const Box& box, const Work& work) {
     for (int x = box.x / spans.cell; x <= x1; ++x) work(spans.at(x, y));
 }
 
-// Whether the spans have all of it.
-bool is_known(const Spans& spans, const Box& box) {
-  bool known = true;
-  each_cell(spans, box, [&](std::size_t i) {
-    known = known && spans.near[i] <= box.near && spans.far[i] >= box.far;
-  });
-  return known;
+bool may_hold(const Box& box) { return box.near <= box.far && box.greatest > 0; }
+
+// A stretch of a box in equal pieces.
+std::vector<Box> pieces_of(const Box& box, int count) {
+  std::vector<Box> pieces(static_cast<std::size_t>(count), {box.x, box.y, box.size});
+  for (int k = 0; k < count; ++k) {
+    Box& piece = pieces[static_cast<std::size_t>(k)];
+    piece.near = std::lerp(box.near, box.far, float(k) / float(count));
+    piece.far = std::lerp(box.near, box.far, float(k + 1) / float(count));
+  }
+  return pieces;
+}
+
+// The boxes of half the size within these that lie in the picture.
+std::vector<Box> halved(const std::vector<Box>& boxes, int width, int height) {
+  std::vector<Box> parts;
+  for (const Box& box : boxes)
+    for (Box piece : pieces_of(box, 2)) {
+      piece.size /= 2;
+      for (int part = 0; part < 4; ++part) {
+        Box quarter = piece;
+        quarter.x += (part & 1) * piece.size;
+        quarter.y += (part >> 1) * piece.size;
+        if (quarter.x < width && quarter.y < height) parts.push_back(quarter);
+      }
+    }
+  return parts;
 }
 
 }  // namespace
 
-bool add_possible(BoxBounds& bounds, int width, int height, std::int64_t most, Spans& spans,
-                  ProofReport& report) {
-  int size = spans.cell;
+std::optional<Possible> find_possible(BoxBounds& bounds, int width, int height, int finest,
+                                      std::int64_t most) {
+  Possible found{.spans = Spans::nowhere(width, height, finest)};
+  int size = finest;
   while (size < largest_block) size *= 2;
 
-  // What each block marches through, and that in pieces about as long as the block is wide, for a
-  // box as deep as the picture is high.
+  // What each block marches through.
   std::vector<Box> boxes;
   for (int y = 0; y < height; y += size)
     for (int x = 0; x < width; x += size) boxes.push_back({x, y, size});
-  if (!bounds.look(boxes)) return false;
-  report.boxes += static_cast<std::int64_t>(boxes.size());
-  const int pieces = std::max(1, height / size);
-  std::vector<Box> next;
-  double all = 0, empty = 0;  // volume, in cells
-  const auto volume = [&](const Box& box) {
-    return double(box.size) * box.size * (double(box.far) - box.near);
+  if (!bounds.look(boxes)) return std::nullopt;
+  found.boxes = static_cast<std::int64_t>(boxes.size());
+  const auto march = [](const Box& box) {
+    return double(box.size) * box.size * std::max(0.0, double(box.far) - double(box.near));
   };
-  for (const Box& box : boxes) {
-    if (!(box.near < box.far)) continue;
-    all += volume(box);
-    if (box.greatest <= 0) {
-      empty += volume(box);
-      continue;
-    }
-    for (int k = 0; k < pieces; ++k) {
-      Box piece{box.x, box.y, box.size};
-      piece.near = std::lerp(box.near, box.far, float(k) / float(pieces));
-      piece.far = std::lerp(box.near, box.far, float(k + 1) / float(pieces));
-      next.push_back(piece);
-    }
-  }
+  double all = 0;
+  for (const Box& box : boxes) all += march(box);
+  std::erase_if(boxes, [](const Box& box) { return !may_hold(box); });
 
-  std::vector<Box> possible;
-  for (;;) {
-    std::erase_if(next, [&](const Box& box) { return is_known(spans, box); });
+  // In pieces about as long as wide, for a march as long as the picture is high; then halved.
+  std::vector<Box> next;
+  for (const Box& box : boxes)
+    for (const Box& piece : pieces_of(box, std::max(1, height / size))) next.push_back(piece);
+  while (!next.empty() && found.boxes + static_cast<std::int64_t>(next.size()) <= most) {
+    if (!bounds.look(next)) return std::nullopt;
+    found.boxes += static_cast<std::int64_t>(next.size());
+    std::erase_if(next, [](const Box& box) { return !may_hold(box); });
     boxes = std::move(next);
     next.clear();
-    if (boxes.empty()) break;
-    if (report.boxes + static_cast<std::int64_t>(boxes.size()) > most) return true;
-    const std::vector<Box> asked = boxes;
-    if (!bounds.look(boxes)) return false;
-    report.boxes += static_cast<std::int64_t>(boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      const Box &box = boxes[i], &whole = asked[i];
-      if (box.greatest <= 0 || !(box.near <= box.far)) {
-        empty += volume(whole);
-      } else if (box.least > 0 || box.size <= spans.cell) {
-        possible.push_back(box);
-      } else {
-        const int half = box.size / 2;
-        const float middle = box.near + (box.far - box.near) / 2;
-        for (int part = 0; part < 8; ++part) {
-          Box piece{box.x + (part & 1) * half, box.y + (part >> 1 & 1) * half, half};
-          if (piece.x >= width || piece.y >= height) continue;
-          piece.near = part < 4 ? box.near : middle;
-          piece.far = part < 4 ? middle : box.far;
-          next.push_back(piece);
-        }
-      }
-    }
+    if (!boxes.empty() && boxes.front().size > finest) next = halved(boxes, width, height);
   }
-  for (const Box& box : possible)
-    each_cell(spans, box, [&](std::size_t i) { spans.widen(i, box.near, box.far); });
-  report.proven = all > 0 ? empty / all : 1;
-  report.complete = true;
-  return true;
+
+  for (const Box& box : boxes)
+    each_cell(found.spans, box, [&](std::size_t i) { found.spans.widen(i, box.near, box.far); });
+  double marched = 0;
+  for (std::size_t i = 0; i < found.spans.near.size(); ++i)
+    if (!found.spans.empty(i))
+      marched += march({0, 0, finest, found.spans.near[i], found.spans.far[i]});
+  found.part = all > 0 ? marched / all : 0;
+  return found;
 }
 
 }  // namespace pse::app

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "app/knobs.h"
@@ -14,10 +15,11 @@
 
 namespace pse::app {
 
-struct ProofReport {
-  std::int64_t boxes = 0;    // whose bounds were computed
-  double proven = 0;         // part of the space of rays that is proven empty
-  bool complete = false;     // what is not in the spans is proven empty
+// What is not proven empty.
+struct Possible {
+  Spans spans;             // all of it, and where a ray has two stretches, what is between
+  double part = 1;         // of what the rays march through, the part in the spans
+  std::int64_t boxes = 0;  // whose bounds were computed
 };
 
 // Asks the program of the bounds for boxes: pixels x0 <= x <= x1, y0 <= y <= y1, and the depths
@@ -47,10 +49,9 @@ class BoxBounds {
   RunStatus& status_;
 };
 
-// Adds to `spans` all that is not proven empty, in blocks of at least spans.cell pixels. What the
-// spans have already is not asked again. At most `most` boxes are asked for: where that is not
-// enough, the spans stay as they are and the report says so. False when cancelled or failed.
-bool add_possible(BoxBounds& bounds, int width, int height, std::int64_t most, Spans& spans,
-                  ProofReport& report);
+// Halves boxes down to `finest` pixels, or as long as no more than `most` boxes are asked for.
+// Nothing when cancelled or failed.
+std::optional<Possible> find_possible(BoxBounds& bounds, int width, int height, int finest,
+                                      std::int64_t most);
 
 }  // namespace pse::app

@@ -53,23 +53,26 @@ class Prepass {
   }
 
  private:
-  // The middle rays of the cells, in coarse steps. What may hold matter, or cells twice as large,
-  // say first where to look.
+  // The middle rays of the cells, in coarse steps; cells twice as large say first where to look.
+  // Where it is known what may hold matter, two rays of every cell of that, which leave less room
+  // for a speck between them.
   bool search_cells(const Spans* possible) {
-    if (spans_.cell < 4) return search_cells_within(possible);
+    if (possible != nullptr)
+      return search_cells_within(possible, 0.25, 0.25) && search_cells_within(possible, 0.75, 0.75);
+    if (spans_.cell < 4) return search_cells_within(nullptr);
     Prepass large(search_, width_, height_, 2 * spans_.cell, report_);
-    return large.search_cells_within(possible) && search_cells_within(&large.spans_);
+    return large.search_cells_within(nullptr) && search_cells_within(&large.spans_);
   }
 
   // Each cell takes its neighbours' stretches too.
-  bool search_cells_within(const Spans* within) {
+  bool search_cells_within(const Spans* within, double middle_x = 0.5, double middle_y = 0.5) {
     std::vector<SpanSearch::Ray> rays;
     std::vector<std::pair<int, int>> cells;
     const double n = spans_.cell;
     for (int y = 0; y < spans_.height; ++y)
       for (int x = 0; x < spans_.width; ++x) {
-        SpanSearch::Ray ray{std::min((x + 0.5) * n, width_ - 0.5),
-                            std::min((y + 0.5) * n, height_ - 0.5)};
+        SpanSearch::Ray ray{std::min((x + middle_x) * n, width_ - 0.5),
+                            std::min((y + middle_y) * n, height_ - 0.5)};
         if (within != nullptr) {
           const auto [near, far] = stretch(*within, x, y);
           if (!(near <= far)) continue;

@@ -95,8 +95,10 @@ class Prepass {
   std::pair<float, float> stretch(const Spans& other, int x, int y) const {
     const int n = spans_.cell;
     std::pair<float, float> found{nowhere_near, nowhere_far};
-    for (int oy = y * n / other.cell; oy <= std::min(((y + 1) * n - 1) / other.cell, other.height - 1); ++oy)
-      for (int ox = x * n / other.cell; ox <= std::min(((x + 1) * n - 1) / other.cell, other.width - 1); ++ox) {
+    for (int oy = y * n / other.cell;
+         oy <= std::min(((y + 1) * n - 1) / other.cell, other.height - 1); ++oy)
+      for (int ox = x * n / other.cell;
+           ox <= std::min(((x + 1) * n - 1) / other.cell, other.width - 1); ++ox) {
         const std::size_t i = other.at(ox, oy);
         if (other.empty(i)) continue;
         found = {std::min(found.first, other.near[i]), std::max(found.second, other.far[i])};
@@ -115,12 +117,12 @@ class Prepass {
   template <class Work>
   void each_neighbour(int x, int y, Work work) const {
     for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, spans_.height - 1); ++ny)
-      for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, spans_.width - 1); ++nx)
-        work(nx, ny);
+      for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, spans_.width - 1); ++nx) work(nx, ny);
   }
 
   bool is_empty(int x, int y) const {
-    return x >= 0 && y >= 0 && x < spans_.width && y < spans_.height && spans_.empty(spans_.at(x, y));
+    return x >= 0 && y >= 0 && x < spans_.width && y < spans_.height &&
+           spans_.empty(spans_.at(x, y));
   }
 
   // Where cells with matter border on cells without, looks at the outermost pixels step by step: if
@@ -157,7 +159,8 @@ class Prepass {
     for (int y = y0; y <= y1; ++y)
       for (int x = x0; x <= x1; ++x) {
         const int dx = x == x0 ? -1 : x == x1 ? 1 : 0, dy = y == y0 ? -1 : y == y1 ? 1 : 0;
-        if (!is_empty(cx + dx, cy) && !is_empty(cx, cy + dy) && !is_empty(cx + dx, cy + dy)) continue;
+        if (!is_empty(cx + dx, cy) && !is_empty(cx, cy + dy) && !is_empty(cx + dx, cy + dy))
+          continue;
         const std::size_t i = spans_.at(cx, cy);
         rays.push_back({x + 0.5, y + 0.5, spans_.near[i] - reach_, spans_.far[i] + reach_});
         cells.emplace_back(cx, cy);
@@ -169,7 +172,8 @@ class Prepass {
     std::vector<SpanSearch::Ray> rays;
     for (int y0 = 0; y0 < height_; y0 += probe_block)
       for (int x0 = 0; x0 < width_; x0 += probe_block) {
-        const int x = x0 + scattered(x0, y0, 1, probe_block), y = y0 + scattered(x0, y0, 2, probe_block);
+        const int x = x0 + scattered(x0, y0, 1, probe_block),
+                  y = y0 + scattered(x0, y0, 2, probe_block);
         if (x < width_ && y < height_) rays.push_back({x + 0.5, y + 0.5});
       }
     report_.searched += static_cast<std::int64_t>(rays.size());
@@ -178,7 +182,8 @@ class Prepass {
     for (const auto& ray : rays) {
       if (!(ray.near < ray.far)) continue;
       if (!std::isfinite(reach_)) reach_ = 0;
-      const int x = static_cast<int>(ray.x) / spans_.cell, y = static_cast<int>(ray.y) / spans_.cell;
+      const int x = static_cast<int>(ray.x) / spans_.cell,
+                y = static_cast<int>(ray.y) / spans_.cell;
       const std::size_t i = spans_.at(x, y);
       if (spans_.near[i] <= ray.near && spans_.far[i] >= ray.far) continue;
       ++report_.missed;
@@ -249,8 +254,9 @@ bool SpanSearch::look(std::vector<Ray>& rays, int step) {
 
   const auto part = [&](std::int64_t number) {
     const auto size = static_cast<std::int64_t>(rays.size());
-    return std::span(rays).subspan(static_cast<std::size_t>(number * batch),
-                                   static_cast<std::size_t>(std::min(batch, size - number * batch)));
+    return std::span(rays).subspan(
+        static_cast<std::size_t>(number * batch),
+        static_cast<std::size_t>(std::min(batch, size - number * batch)));
   };
   std::vector<double> counts(rays.size() / batch + 1);
   BatchPlan plan;

@@ -24,7 +24,9 @@ struct Spans {
 
   // Of a picture of this size in pixels, without matter.
   static Spans nowhere(int width, int height, int cell);
-  std::size_t at(int x, int y) const { return std::size_t(y) * std::size_t(width) + std::size_t(x); }
+  std::size_t at(int x, int y) const {
+    return std::size_t(y) * std::size_t(width) + std::size_t(x);
+  }
   bool empty(std::size_t i) const { return !(near[i] <= far[i]); }
   // Adds a stretch to a cell's; true where that changes it.
   bool widen(std::size_t i, float from, float to);
@@ -51,7 +53,7 @@ class SpanSearch {
              const std::vector<ExternalFunction>& externals, int threads, RunStatus& status);
 
   struct Ray {
-    double x = 0, y = 0;           // in pixels
+    double x = 0, y = 0;               // in pixels
     float near = -1e30f, far = 1e30f;  // look here only; receives what was found
   };
   // Takes every `step`th step of each ray. False when cancelled or failed.

@@ -24,9 +24,8 @@ float above(float value) { return value + std::abs(value) * 0x1p-21f + 1e-9f; }
 }  // namespace
 
 BoxBounds::BoxBounds(const Program& program, const ImagePlane& plane,
-                     const std::vector<Knob>& knobs,
-                     const std::vector<ExternalFunction>& externals, int threads,
-                     RunStatus& status)
+                     const std::vector<Knob>& knobs, const std::vector<ExternalFunction>& externals,
+                     int threads, RunStatus& status)
     : program_(program),
       state_(plane_state(program.module(), plane, knobs)),
       threads_(threads),
@@ -49,8 +48,9 @@ bool BoxBounds::look(std::vector<Box>& boxes) {
   if (status_.failed_check >= 0 || status_.cancel) return false;
   const auto part = [&](std::int64_t number) {
     const auto size = static_cast<std::int64_t>(boxes.size());
-    return std::span(boxes).subspan(static_cast<std::size_t>(number * batch),
-                                    static_cast<std::size_t>(std::min(batch, size - number * batch)));
+    return std::span(boxes).subspan(
+        static_cast<std::size_t>(number * batch),
+        static_cast<std::size_t>(std::min(batch, size - number * batch)));
   };
   BatchPlan plan;
   plan.batches = (static_cast<std::int64_t>(boxes.size()) + batch - 1) / batch;

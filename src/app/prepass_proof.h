@@ -32,9 +32,9 @@ class BoxBounds {
             const std::vector<ExternalFunction>& externals, int threads, RunStatus& status);
 
   struct Box {
-    int x = 0, y = 0, size = 0;     // in pixels
+    int x = 0, y = 0, size = 0;        // in pixels
     float near = -1e30f, far = 1e30f;  // receive the part that the program marches through
-    float least = 0, greatest = 0;  // receive the density's bounds
+    float least = 0, greatest = 0;     // receive the density's bounds
   };
   // False when cancelled or failed.
   bool look(std::vector<Box>& boxes);

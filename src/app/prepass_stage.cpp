@@ -76,8 +76,7 @@ Exit PrepassStage::run(Session& session, RenderOptions& options, const ProgramFi
   LowerHost host = module_host(program.path, session);
   Textures stored(session, program.path, options.write.working);
   stored.answer(host);
-  const auto compiled =
-      compile(program.sources, program.file, host, compile_with, diagnostics);
+  const auto compiled = compile(program.sources, program.file, host, compile_with, diagnostics);
   report(diagnostics, program.sources, session);
   if (!compiled) throw Failure(Exit::program, "");
   for (const ProgramOutput& output : compiled->outputs)
@@ -113,7 +112,8 @@ Exit PrepassStage::run(Session& session, RenderOptions& options, const ProgramFi
                            .transform = options.transform};
     SpanSearch search(*compiled, plane, knobs, stored.functions(), options.threads, status);
     std::optional<BoxBounds> bounds;
-    if (bounded) bounds.emplace(*bounded, plane, knobs, stored.functions(), options.threads, status);
+    if (bounded)
+      bounds.emplace(*bounded, plane, knobs, stored.functions(), options.threads, status);
     PrepassReport found;
     const auto spans = find_spans(search, bounds ? &*bounds : nullptr, size.width, size.height,
                                   options.prepass, found);

@@ -78,15 +78,14 @@ class Writer {
     if (in.results.empty()) return;
     if (!depends(in.results.front())) return copy(in);
     if (in.op == Op::input) {
-      bounds_[in.result()] = between(
-          {{builder_, builder_.emit(Op::input, {}, in.imm)},
-           {builder_, builder_.emit(Op::input, {}, upper_input_[array])}});
+      bounds_[in.result()] =
+          between({{builder_, builder_.emit(Op::input, {}, in.imm)},
+                   {builder_, builder_.emit(Op::input, {}, upper_input_[array])}});
       return;
     }
     if (in.op == Op::call) return call(in);
     if (in.op == Op::external || in.op == Op::array_load || in.op == Op::array_length) {
-      for (const Value result : in.results)
-        bounds_[result] = unknown(source_.values[result].type);
+      for (const Value result : in.results) bounds_[result] = unknown(source_.values[result].type);
       return;
     }
     std::vector<Bound> operands;
@@ -228,14 +227,16 @@ class Writer {
       for (const Value result : in.results)
         append_ends(builder_, nowhere(source_.values[result].type), skipped.yields);
       builder_.end_region();
-      take_results(in, builder_.emit_if(place(builder_, guard), std::move(taken), std::move(skipped)));
+      take_results(in,
+                   builder_.emit_if(place(builder_, guard), std::move(taken), std::move(skipped)));
       std::vector<Bound> results;
       for (const Value result : in.results) results.push_back(bounds_[result]);
       return results;
     };
     const std::vector<Bound> yes = run(true, condition.may);
     const std::vector<Bound> no = run(false, negate(condition.must));
-    for (std::size_t i = 0; i < in.results.size(); ++i) bounds_[in.results[i]] = hull(yes[i], no[i]);
+    for (std::size_t i = 0; i < in.results.size(); ++i)
+      bounds_[in.results[i]] = hull(yes[i], no[i]);
   }
 
   // ---- Loops -----------------------------------------------------------------------------------
@@ -394,13 +395,14 @@ class Writer {
   ir::Function made_;
   ir::Builder builder_;
   Functions functions_;
-  std::vector<Bound> bounds_;                      // per value of the source
-  std::vector<const Instruction*> defined_by_;     // likewise
-  std::vector<std::int32_t> upper_input_;          // per input: where its upper ends are
+  std::vector<Bound> bounds_;                   // per value of the source
+  std::vector<const Instruction*> defined_by_;  // likewise
+  std::vector<std::int32_t> upper_input_;       // per input: where its upper ends are
 };
 
 // Inputs that are known become constants.
-void set_known(Region& region, const ir::Module& module, const std::map<std::string, float>& known) {
+void set_known(Region& region, const ir::Module& module,
+               const std::map<std::string, float>& known) {
   for (Instruction& in : region.body) {
     for (Region& inner : in.regions) set_known(inner, module, known);
     if (in.op != Op::input) continue;

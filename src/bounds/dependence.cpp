@@ -36,9 +36,8 @@ class Walk {
   // `undecided`: whether it runs depends on the place.
   void walk(const Region& region, bool undecided) {
     for (const Instruction& in : region.body) {
-      const bool condition =
-          undecided || (in.op == Op::if_ && at(in.operands[0])) ||
-          (in.op == Op::loop && at(in.regions[0].yields[0]));
+      const bool condition = undecided || (in.op == Op::if_ && at(in.operands[0])) ||
+                             (in.op == Op::loop && at(in.regions[0].yields[0]));
       for (const Region& inner : in.regions) walk(inner, condition);
       visit(in, undecided);
     }
@@ -54,8 +53,8 @@ class Walk {
         break;
       case Op::if_:
         for (std::size_t i = 0; i < in.results.size(); ++i)
-          set(in.results[i], at(in.operands[0]) || at(in.regions[0].yields[i]) ||
-                                 at(in.regions[1].yields[i]));
+          set(in.results[i],
+              at(in.operands[0]) || at(in.regions[0].yields[i]) || at(in.regions[1].yields[i]));
         break;
       case Op::loop: {
         const bool ends_anywhere = at(in.regions[0].yields[0]);

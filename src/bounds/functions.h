@@ -27,8 +27,7 @@ class Functions {
   // What function `callee` can give, each of its results. `keys` are its integer operands. What is
   // not known is anything.
   std::vector<Range> call(ir::Builder& builder, std::int32_t callee,
-                          const std::vector<Argument>& arguments,
-                          const std::vector<IrInt>& keys);
+                          const std::vector<Argument>& arguments, const std::vector<IrInt>& keys);
 
  private:
   std::vector<Range> noise(ir::Builder& builder, std::int32_t callee,

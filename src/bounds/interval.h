@@ -101,7 +101,7 @@ Interval<F> times(const Interval<F>& a, const F& b) {
 template <class F>
 Interval<F> square(const Interval<F>& a) {
   const F low = a.lo * a.lo, high = a.hi * a.hi;
-  const auto crosses = both(a.lo < 0.0f, a.hi > 0.0f);
+  const auto crosses = both(a.lo<0.0f, a.hi> 0.0f);
   return provided(negate(may_be_nan(a)),
                   Interval<F>{select(crosses, F(0.0f), min(low, high)), max(low, high)});
 }
@@ -126,7 +126,7 @@ Interval<F> fused(const Interval<F>& a, const F& b, const Interval<F>& c) {
 }
 template <class F>
 Interval<F> fused_square(const Interval<F>& a, const Interval<F>& c) {
-  const auto crosses = both(a.lo < 0.0f, a.hi > 0.0f);
+  const auto crosses = both(a.lo<0.0f, a.hi> 0.0f);
   const F near = select(crosses, F(0.0f), min(abs(a.lo), abs(a.hi)));
   const F far = max(abs(a.lo), abs(a.hi));
   return provided(negate(may_be_nan(a)), checked(fma(near, near, c.lo), fma(far, far, c.hi)));
@@ -139,7 +139,7 @@ Interval<F> operator/(const Interval<F>& a, const Interval<F>& b) {
 
 template <class F>
 Interval<F> abs(const Interval<F>& a) {
-  const auto crosses = both(a.lo < 0.0f, a.hi > 0.0f);
+  const auto crosses = both(a.lo<0.0f, a.hi> 0.0f);
   const F low = abs(a.lo), high = abs(a.hi);
   return provided(negate(may_be_nan(a)),
                   Interval<F>{select(crosses, F(0.0f), min(low, high)), max(low, high)});

@@ -10,9 +10,9 @@
 namespace pse::bounds {
 namespace {
 
-constexpr std::array<std::string_view, 13> monotonic = {
-    "exp",  "exp2",  "expm1", "log",  "log2", "log10", "log1p",
-    "cbrt", "asin",  "acos",  "atan", "sinh", "tanh"};
+constexpr std::array<std::string_view, 13> monotonic = {"exp",   "exp2",  "expm1", "log",  "log2",
+                                                        "log10", "log1p", "cbrt",  "asin", "acos",
+                                                        "atan",  "sinh",  "tanh"};
 
 class Math {
  public:
@@ -24,8 +24,7 @@ class Math {
   }
   Range at_ends(const Range& a) const { return widened(around(at(a.lo), at(a.hi))); }
   Range at_corners(const Range& a, const Range& b) const {
-    return widened(
-        around(at(a.lo, b.lo), at(a.lo, b.hi), at(a.hi, b.lo), at(a.hi, b.hi)));
+    return widened(around(at(a.lo, b.lo), at(a.lo, b.hi), at(a.hi, b.lo), at(a.hi, b.hi)));
   }
 
   // sin and cos move no faster than their argument.
@@ -34,7 +33,8 @@ class Math {
     const IrFloat reach = fma(max(abs(a.lo), abs(a.hi)), IrFloat(0x1p-22f),
                               max(a.hi - middle, middle - a.lo) * (1.0f + 0x1p-20f) + 1e-6f);
     const IrFloat value = at(middle);
-    const IrFloat low = max(value - reach, IrFloat(-1.0f)), high = min(value + reach, IrFloat(1.0f));
+    const IrFloat low = max(value - reach, IrFloat(-1.0f)),
+                  high = min(value + reach, IrFloat(1.0f));
     return provided(reach < IrFloat(num::infinity), Range{low, high});
   }
 
@@ -77,7 +77,8 @@ class Math {
     const IrBool same = floor(a.lo / b) == floor(a.hi / b);
     const Range ends = at_ends_with(a, b);
     const IrFloat slack = max(abs(a.lo), abs(a.hi)) * 0x1p-21f;
-    const IrBool good = both(b > 0.0f, both(slack < IrFloat(num::infinity), b < IrFloat(num::infinity)));
+    const IrBool good =
+        both(b > 0.0f, both(slack < IrFloat(num::infinity), b < IrFloat(num::infinity)));
     return provided(good, Range{select(same, max(ends.lo - slack, IrFloat(0.0f)), IrFloat(0.0f)),
                                 select(same, min(ends.hi + slack, b), b)});
   }

@@ -24,10 +24,8 @@ namespace pse::bounds {
 struct NoiseLimits {
   float value, slope, bend;
 };
-inline constexpr std::array<NoiseLimits, 4> improved_limits = {{{0.95f, 2.7f, 7.7f},
-                                                                {1.0f, 3.1f, 14.0f},
-                                                                {1.04f, 4.0f, 24.0f},
-                                                                {1.6f, 6.0f, 45.0f}}};
+inline constexpr std::array<NoiseLimits, 4> improved_limits = {
+    {{0.95f, 2.7f, 7.7f}, {1.0f, 3.1f, 14.0f}, {1.04f, 4.0f, 24.0f}, {1.6f, 6.0f, 45.0f}}};
 
 // By hand: a value in [-1, 1] and slopes in [-1, 1] at each corner.
 inline float limit_1985(std::size_t dimensions) {

@@ -50,9 +50,8 @@ std::vector<IrFloat> write_bounds(bool three, bool periodic, const std::vector<I
       return num::improved_vector_noise(place, options);
     }));
   } else {
-    add(bound_noise<1>(box, [&](const auto& place) {
-      return std::array{num::improved_noise(place, options)};
-    }));
+    add(bound_noise<1>(
+        box, [&](const auto& place) { return std::array{num::improved_noise(place, options)}; }));
   }
   return ends;
 }
@@ -96,9 +95,9 @@ std::vector<Range> Functions::noise(ir::Builder& builder, std::int32_t callee,
   const auto within = [&](float limit) {
     IrBool finite(true);
     for (std::size_t axis = 0; axis < n; ++axis)
-      finite = both(finite, arguments[axis].range.hi - arguments[axis].range.lo < IrFloat(num::infinity));
-    return std::vector<Range>(results,
-                              provided(finite, Range{IrFloat(-limit), IrFloat(limit)}));
+      finite = both(finite,
+                    arguments[axis].range.hi - arguments[axis].range.lo < IrFloat(num::infinity));
+    return std::vector<Range>(results, provided(finite, Range{IrFloat(-limit), IrFloat(limit)}));
   };
   if (name.kind == "noise1985") return within(limit_1985(n));
   if (name.kind == "noise1989") return within(limit_1989(n));

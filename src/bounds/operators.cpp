@@ -36,8 +36,7 @@ Bound choice(std::span<const Bound> a) {
   if (a[0].exact) {
     const IrBool& c = a[0].must;
     Bound bound{.exact = false, .type = yes.type};
-    if (yes.type == ir::Type::f32)
-      bound.range = {select(c, p.lo, q.lo), select(c, p.hi, q.hi)};
+    if (yes.type == ir::Type::f32) bound.range = {select(c, p.lo, q.lo), select(c, p.hi, q.hi)};
     const auto pick = [&](const IrBool& then, const IrBool& otherwise) {
       return either(both(c, then), both(negate(c), otherwise));
     };
@@ -52,8 +51,8 @@ Bound choice(std::span<const Bound> a) {
   const auto decided = [&](const IrFloat& then, const IrFloat& no_then, const IrFloat& any) {
     return select(a[0].must, then, select(a[0].may, any, no_then));
   };
-  return between({decided(p.lo, q.lo, either_side.range.lo),
-                  decided(p.hi, q.hi, either_side.range.hi)});
+  return between(
+      {decided(p.lo, q.lo, either_side.range.lo), decided(p.hi, q.hi, either_side.range.hi)});
 }
 
 // Whatever the entry.
@@ -74,8 +73,8 @@ Bound bound_operator(const ir::Module& module, const ir::Instruction& in,
       // Infinity less itself is NaN, so only of what is finite.
       if (in.operands[0] == in.operands[1]) {
         const IrFloat zero(0.0f);
-        return between(provided(a[0].range.hi - a[0].range.lo < IrFloat(num::infinity),
-                                Range{zero, zero}));
+        return between(
+            provided(a[0].range.hi - a[0].range.lo < IrFloat(num::infinity), Range{zero, zero}));
       }
       return between(a[0].range - a[1].range);
     case Op::fmul:
@@ -128,9 +127,7 @@ Bound bound_operator(const ir::Module& module, const ir::Instruction& in,
       break;
   }
   const char letter = ir::info(in.op).results.front();
-  return unknown(letter == 'f'   ? ir::Type::f32
-                 : letter == 'i' ? ir::Type::i32
-                                 : ir::Type::boolean);
+  return unknown(letter == 'f' ? ir::Type::f32 : letter == 'i' ? ir::Type::i32 : ir::Type::boolean);
 }
 
 }  // namespace pse::bounds

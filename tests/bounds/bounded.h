@@ -71,7 +71,8 @@ class Bounded {
                                              const std::vector<Place>& high) {
     const ir::Module& module = program.module();
     const std::size_t room = (low.size() + 15) / 16 * 16;
-    std::vector<std::vector<float>> inputs, outputs(module.outputs.size(), std::vector<float>(room));
+    std::vector<std::vector<float>> inputs,
+        outputs(module.outputs.size(), std::vector<float>(room));
     FrameState state;
     for (const ir::Input& input : module.inputs) {
       const std::string& name = input.name;
@@ -109,7 +110,8 @@ class Bounded {
   static float knob(const Program& program, const std::string& name) {
     for (const Knob& knob : program.knobs)
       for (std::size_t k = 0; k < knob.value.size(); ++k) {
-        const std::string part = knob.value.size() == 1 ? knob.name : knob.name + "." + std::to_string(k);
+        const std::string part =
+            knob.value.size() == 1 ? knob.name : knob.name + "." + std::to_string(k);
         if (part == name) return knob.value[k];
       }
     return 0;

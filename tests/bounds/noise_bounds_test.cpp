@@ -54,7 +54,8 @@ std::array<double, 3> worst_at(const std::array<double, N>& x) {
       for (std::size_t i = 0; i < N; ++i) along += double(tables[i].entries[e]) * way[i];
       v = std::max(v, std::abs(weight({}) * along));
       for (std::size_t i = 0; i < N; ++i)
-        s[i] = std::max(s[i], std::abs(once(i) * along + weight({}) * double(tables[i].entries[e])));
+        s[i] =
+            std::max(s[i], std::abs(once(i) * along + weight({}) * double(tables[i].entries[e])));
       for (std::size_t d = 0; d < diagonals; ++d) {
         const auto sign = [&](std::size_t i) { return i > 0 && (d >> (i - 1) & 1) ? -1.0 : 1.0; };
         double second = 0, first = 0, gradient = 0;

@@ -35,6 +35,7 @@ std::span<const DocEntry> told_entries() {
        "where a prepass found matter on the pixel's ray, and what step it looks with; for the "
        "marchers",
        "variable"},
+      {"xform", "xform", "the 16 numbers of --xform, row by row", "variable"},
       {"begin_frame", "if begin_frame ...",
        "true where a frame begins: the block is computed once per frame", "variable"},
       {"place", "place",

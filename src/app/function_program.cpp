@@ -4,11 +4,50 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <set>
 
 #include "lower/scan.h"
 
 namespace pse::app {
+namespace {
+
+// The same in one expression.
+std::optional<Span> find_call(const lang::ExprPtr& expr, const std::string& name) {
+  if (!expr) return std::nullopt;
+  const auto among = [&](std::initializer_list<const lang::ExprPtr*> parts) {
+    std::optional<Span> found;
+    for (const lang::ExprPtr* part : parts)
+      if (!found) found = find_call(*part, name);
+    return found;
+  };
+  if (const auto* call = std::get_if<lang::CallExpr>(&expr->node)) {
+    const auto* callee = std::get_if<lang::NameExpr>(&call->callee->node);
+    if (callee != nullptr && callee->name == name) return expr->span;
+    for (const lang::Argument& argument : call->arguments)
+      if (const auto found = find_call(argument.value, name)) return found;
+  }
+  if (const auto* pair = std::get_if<lang::BinaryExpr>(&expr->node))
+    return among({&pair->left, &pair->right});
+  if (const auto* unary = std::get_if<lang::UnaryExpr>(&expr->node))
+    return among({&unary->operand});
+  if (const auto* choice = std::get_if<lang::ConditionalExpr>(&expr->node))
+    return among({&choice->condition, &choice->if_true, &choice->if_false});
+  if (const auto* member = std::get_if<lang::MemberExpr>(&expr->node)) return among({&member->base});
+  if (const auto* index = std::get_if<lang::IndexExpr>(&expr->node)) return among({&index->base});
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Span> find_call(const lang::Program& tree, const std::string& name) {
+  for (const lang::StmtPtr& statement : tree.body) {
+    const auto* set = statement ? std::get_if<lang::AssignStmt>(&statement->node) : nullptr;
+    if (set == nullptr) continue;
+    if (const auto found = find_call(set->value, name)) return found;
+  }
+  return std::nullopt;
+}
 
 int required_parameters(const lang::Program& tree, const std::string& name) {
   for (const lang::StmtPtr& statement : tree.body) {

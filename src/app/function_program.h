@@ -17,6 +17,9 @@ int required_parameters(const lang::Program& tree, const std::string& name);
 // Whether the program sets `name` outside its functions.
 bool sets_at_top(const lang::Program& tree, const std::string& name);
 
+// The first call of the function `name` in what the program sets outside its functions.
+std::optional<Span> find_call(const lang::Program& tree, const std::string& name);
+
 // Lines that set each of `names` by calling the function of that name at `point`; functions of two
 // parameters, as `color(p, density)`, are given the density too.
 std::string calls_at_point(const lang::Program& tree, const std::vector<std::string>& names);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/prepass_proof.h"
 #include "app/surfaces.h"
 #include "image/writer.h"
 #include "stream/batches.h"
@@ -13,6 +14,8 @@ namespace {
 
 constexpr float nowhere_near = 1e30f, nowhere_far = -1e30f;
 constexpr int probe_block = 24;  // one probe in a square of so many pixels
+// Where the part not proven empty is at most this, the picture marches through all of it.
+constexpr double little = 1.0 / 40;
 
 // A place within a block that looks random and is the same at every run.
 int scattered(int x, int y, int salt, int below) {
@@ -29,42 +32,51 @@ class Prepass {
  public:
   Prepass(SpanSearch& search, int width, int height, int factor, PrepassReport& report)
       : search_(search), width_(width), height_(height), report_(report) {
-    spans_.cell = factor;
-    spans_.width = (width + factor - 1) / factor;
-    spans_.height = (height + factor - 1) / factor;
-    const auto cells = std::size_t(spans_.width) * std::size_t(spans_.height);
-    spans_.near.assign(cells, nowhere_near);
-    spans_.far.assign(cells, nowhere_far);
-    checked_.assign(cells, false);
+    spans_ = Spans::nowhere(width, height, factor);
+    checked_.assign(spans_.near.size(), false);
   }
 
-  std::optional<Spans> run() {
-    if (!search_cells() || !follow()) return std::nullopt;
+  std::optional<Spans> run(BoxBounds* bounds) {
+    std::optional<Possible> possible;
+    if (bounds != nullptr) {
+      const int finest = spans_.cell % 2 == 0 ? spans_.cell / 2 : spans_.cell;
+      possible = find_possible(*bounds, width_, height_, finest, std::int64_t{width_} * height_);
+      if (!possible) return std::nullopt;
+      report_.boxes += possible->boxes;
+      report_.possible = possible->part;
+      report_.proven = possible->part <= little;
+      if (report_.proven) return std::move(possible->spans);
+    }
+    if (!search_cells(possible ? &possible->spans : nullptr) || !follow()) return std::nullopt;
     if (!probe() || !follow()) return std::nullopt;
     return spans_;
   }
 
  private:
-  // The middle rays of the cells, in coarse steps. Cells twice as large say first where to look.
-  bool search_cells() {
+  // The middle rays of the cells, in coarse steps; cells twice as large say first where to look.
+  // Where it is known what may hold matter, two rays of every cell of that, which leave less room
+  // for a speck between them.
+  bool search_cells(const Spans* possible) {
+    if (possible != nullptr)
+      return search_cells_within(possible, 0.25, 0.25) && search_cells_within(possible, 0.75, 0.75);
     if (spans_.cell < 4) return search_cells_within(nullptr);
     Prepass large(search_, width_, height_, 2 * spans_.cell, report_);
-    return large.search_cells_within(nullptr) && search_cells_within(&large);
+    return large.search_cells_within(nullptr) && search_cells_within(&large.spans_);
   }
 
   // Each cell takes its neighbours' stretches too.
-  bool search_cells_within(const Prepass* large) {
+  bool search_cells_within(const Spans* within, double middle_x = 0.5, double middle_y = 0.5) {
     std::vector<SpanSearch::Ray> rays;
     std::vector<std::pair<int, int>> cells;
     const double n = spans_.cell;
     for (int y = 0; y < spans_.height; ++y)
       for (int x = 0; x < spans_.width; ++x) {
-        SpanSearch::Ray ray{std::min((x + 0.5) * n, width_ - 0.5),
-                            std::min((y + 0.5) * n, height_ - 0.5)};
-        if (large != nullptr) {
-          const std::size_t i = large->spans_.at(x / 2, y / 2);
-          if (large->spans_.empty(i)) continue;
-          ray.near = large->spans_.near[i], ray.far = large->spans_.far[i];
+        SpanSearch::Ray ray{std::min((x + middle_x) * n, width_ - 0.5),
+                            std::min((y + middle_y) * n, height_ - 0.5)};
+        if (within != nullptr) {
+          const auto [near, far] = stretch(*within, x, y);
+          if (!(near <= far)) continue;
+          ray.near = near, ray.far = far;
         }
         rays.push_back(ray);
         cells.emplace_back(x, y);
@@ -79,6 +91,21 @@ class Prepass {
     return true;
   }
 
+  // What other spans have within a cell.
+  std::pair<float, float> stretch(const Spans& other, int x, int y) const {
+    const int n = spans_.cell;
+    std::pair<float, float> found{nowhere_near, nowhere_far};
+    for (int oy = y * n / other.cell;
+         oy <= std::min(((y + 1) * n - 1) / other.cell, other.height - 1); ++oy)
+      for (int ox = x * n / other.cell;
+           ox <= std::min(((x + 1) * n - 1) / other.cell, other.width - 1); ++ox) {
+        const std::size_t i = other.at(ox, oy);
+        if (other.empty(i)) continue;
+        found = {std::min(found.first, other.near[i]), std::max(found.second, other.far[i])};
+      }
+    return found;
+  }
+
   // Gives a stretch to a cell and its neighbours; those that change are to be checked.
   void spread(int x, int y, float from, float to) {
     each_neighbour(x, y, [&](int nx, int ny) {
@@ -90,12 +117,12 @@ class Prepass {
   template <class Work>
   void each_neighbour(int x, int y, Work work) const {
     for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, spans_.height - 1); ++ny)
-      for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, spans_.width - 1); ++nx)
-        work(nx, ny);
+      for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, spans_.width - 1); ++nx) work(nx, ny);
   }
 
   bool is_empty(int x, int y) const {
-    return x >= 0 && y >= 0 && x < spans_.width && y < spans_.height && spans_.empty(spans_.at(x, y));
+    return x >= 0 && y >= 0 && x < spans_.width && y < spans_.height &&
+           spans_.empty(spans_.at(x, y));
   }
 
   // Where cells with matter border on cells without, looks at the outermost pixels step by step: if
@@ -132,7 +159,8 @@ class Prepass {
     for (int y = y0; y <= y1; ++y)
       for (int x = x0; x <= x1; ++x) {
         const int dx = x == x0 ? -1 : x == x1 ? 1 : 0, dy = y == y0 ? -1 : y == y1 ? 1 : 0;
-        if (!is_empty(cx + dx, cy) && !is_empty(cx, cy + dy) && !is_empty(cx + dx, cy + dy)) continue;
+        if (!is_empty(cx + dx, cy) && !is_empty(cx, cy + dy) && !is_empty(cx + dx, cy + dy))
+          continue;
         const std::size_t i = spans_.at(cx, cy);
         rays.push_back({x + 0.5, y + 0.5, spans_.near[i] - reach_, spans_.far[i] + reach_});
         cells.emplace_back(cx, cy);
@@ -144,7 +172,8 @@ class Prepass {
     std::vector<SpanSearch::Ray> rays;
     for (int y0 = 0; y0 < height_; y0 += probe_block)
       for (int x0 = 0; x0 < width_; x0 += probe_block) {
-        const int x = x0 + scattered(x0, y0, 1, probe_block), y = y0 + scattered(x0, y0, 2, probe_block);
+        const int x = x0 + scattered(x0, y0, 1, probe_block),
+                  y = y0 + scattered(x0, y0, 2, probe_block);
         if (x < width_ && y < height_) rays.push_back({x + 0.5, y + 0.5});
       }
     report_.searched += static_cast<std::int64_t>(rays.size());
@@ -153,7 +182,8 @@ class Prepass {
     for (const auto& ray : rays) {
       if (!(ray.near < ray.far)) continue;
       if (!std::isfinite(reach_)) reach_ = 0;
-      const int x = static_cast<int>(ray.x) / spans_.cell, y = static_cast<int>(ray.y) / spans_.cell;
+      const int x = static_cast<int>(ray.x) / spans_.cell,
+                y = static_cast<int>(ray.y) / spans_.cell;
       const std::size_t i = spans_.at(x, y);
       if (spans_.near[i] <= ray.near && spans_.far[i] >= ray.far) continue;
       ++report_.missed;
@@ -172,6 +202,17 @@ class Prepass {
 };
 
 }  // namespace
+
+Spans Spans::nowhere(int width, int height, int cell) {
+  Spans spans;
+  spans.cell = cell;
+  spans.width = (width + cell - 1) / cell;
+  spans.height = (height + cell - 1) / cell;
+  const auto cells = std::size_t(spans.width) * std::size_t(spans.height);
+  spans.near.assign(cells, nowhere_near);
+  spans.far.assign(cells, nowhere_far);
+  return spans;
+}
 
 bool Spans::widen(std::size_t i, float from, float to) {
   if (near[i] <= from && far[i] >= to) return false;
@@ -213,8 +254,9 @@ bool SpanSearch::look(std::vector<Ray>& rays, int step) {
 
   const auto part = [&](std::int64_t number) {
     const auto size = static_cast<std::int64_t>(rays.size());
-    return std::span(rays).subspan(static_cast<std::size_t>(number * batch),
-                                   static_cast<std::size_t>(std::min(batch, size - number * batch)));
+    return std::span(rays).subspan(
+        static_cast<std::size_t>(number * batch),
+        static_cast<std::size_t>(std::min(batch, size - number * batch)));
   };
   std::vector<double> counts(rays.size() / batch + 1);
   BatchPlan plan;
@@ -249,9 +291,9 @@ bool SpanSearch::look(std::vector<Ray>& rays, int step) {
   return end.end == RunEnd::finished;
 }
 
-std::optional<Spans> find_spans(SpanSearch& search, int width, int height, int factor,
-                                PrepassReport& report) {
-  auto spans = Prepass(search, width, height, factor, report).run();
+std::optional<Spans> find_spans(SpanSearch& search, BoxBounds* bounds, int width, int height,
+                                int factor, PrepassReport& report) {
+  auto spans = Prepass(search, width, height, factor, report).run(bounds);
   report.evaluations = search.evaluations();
   return spans;
 }

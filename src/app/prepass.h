@@ -22,13 +22,22 @@ struct Spans {
   int cell = 1;               // side of a cell in pixels
   std::vector<float> near, far;
 
-  std::size_t at(int x, int y) const { return std::size_t(y) * std::size_t(width) + std::size_t(x); }
+  // Of a picture of this size in pixels, without matter.
+  static Spans nowhere(int width, int height, int cell);
+  std::size_t at(int x, int y) const {
+    return std::size_t(y) * std::size_t(width) + std::size_t(x);
+  }
   bool empty(std::size_t i) const { return !(near[i] <= far[i]); }
   // Adds a stretch to a cell's; true where that changes it.
   bool widen(std::size_t i, float from, float to);
 };
 
+class BoxBounds;
+
 struct PrepassReport {
+  std::int64_t boxes = 0;     // whose bounds were computed (prepass_proof.h)
+  double possible = 1;        // part of the rays that is not proven empty
+  bool proven = false;        // what is outside the spans is proven empty
   std::int64_t searched = 0;  // rays looked at, of whatever step
   std::int64_t probes = 0;    // pixels looked at step by step, wherever they are
   std::int64_t missed = 0;    // those with matter that the coarse search did not find
@@ -44,7 +53,7 @@ class SpanSearch {
              const std::vector<ExternalFunction>& externals, int threads, RunStatus& status);
 
   struct Ray {
-    double x = 0, y = 0;           // in pixels
+    double x = 0, y = 0;               // in pixels
     float near = -1e30f, far = 1e30f;  // look here only; receives what was found
   };
   // Takes every `step`th step of each ray. False when cancelled or failed.
@@ -61,11 +70,13 @@ class SpanSearch {
   double evaluations_ = 0;
 };
 
-// The whole prepass of one frame: every `factor`th pixel and step, widened by one cell on all
-// sides; then followed wherever matter goes on beyond the cells found; then probed at single pixels
-// for what is too thin to have been seen, which is followed too. Nothing when cancelled or failed.
-std::optional<Spans> find_spans(SpanSearch& search, int width, int height, int factor,
-                                PrepassReport& report);
+// The whole prepass of one frame. With `bounds`, what is not proven empty is all there is to look
+// at; where it is little it is the result, and nothing is missed. Else every `factor`th pixel and
+// step of it is looked at and widened by one cell on all sides; then followed wherever matter goes
+// on beyond the cells found; then single pixels are probed for what is too thin to have been seen,
+// which is followed too. Nothing when cancelled or failed.
+std::optional<Spans> find_spans(SpanSearch& search, BoxBounds* bounds, int width, int height,
+                                int factor, PrepassReport& report);
 
 // Writes the spans as an image with the pixels of the picture and the channels near and far.
 // Throws Failure (output).

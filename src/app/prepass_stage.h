@@ -18,7 +18,7 @@ class PrepassStage {
   PrepassStage& operator=(const PrepassStage&) = delete;
 
   // Adds the image `prepass` to `options`. Throws Failure. Returns how a stopped run should end.
-  Exit run(Session& session, RenderOptions& options, ProgramFile& program,
+  Exit run(Session& session, RenderOptions& options, const ProgramFile& rendered,
            const std::vector<KnobSetting>& settings, Signals& signals);
 
  private:

@@ -39,7 +39,14 @@ Diagnostics filtered(const Diagnostics& diagnostics, const WarningPolicy& policy
 }
 
 Exit exit_of(const Diagnostics& diagnostics, const WarningPolicy& policy) {
-  if (diagnostics.has_errors()) return Exit::program;
+  // A picture or volume that cannot be read is no fault of the program that names it.
+  const auto is_input = [](const Diagnostic& d) { return d.code == "texture" || d.code == "volume"; };
+  const auto is_program = [&](const Diagnostic& d) {
+    return d.severity == Severity::error && !is_input(d);
+  };
+  if (std::any_of(diagnostics.all().begin(), diagnostics.all().end(), is_program))
+    return Exit::program;
+  if (diagnostics.has_errors()) return Exit::input;
   const bool warned =
       std::any_of(diagnostics.all().begin(), diagnostics.all().end(),
                   [](const Diagnostic& d) { return d.severity == Severity::warning; });

@@ -53,6 +53,16 @@ std::vector<Value> Builder::emit_multi(Op op, std::span<const Value> operands, s
   return regions_.back()->body.back().results;
 }
 
+std::vector<Value> Builder::emit_like(const Instruction& original, std::span<const Value> operands,
+                                      std::span<const Type> result_types) {
+  append({.op = original.op,
+          .operands = {operands.begin(), operands.end()},
+          .imm = original.imm,
+          .component = original.component},
+         result_types);
+  return regions_.back()->body.back().results;
+}
+
 Value Builder::add_param(Region& region, Type type) {
   region.params.push_back(function_->add_value(type));
   return region.params.back();

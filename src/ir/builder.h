@@ -36,6 +36,9 @@ class Builder {
   std::vector<Value> emit_multi(Op op, std::span<const Value> operands, std::span<const Type> result_types,
                                 std::int32_t imm);
 
+  // The same instruction, without regions, for other operands. Gives its results.
+  std::vector<Value> emit_like(const Instruction& original, std::span<const Value> operands, std::span<const Type> result_types);
+
   // Structured control. Regions are filled between begin_region and end_region, then handed to emit_if / emit_loop.
   void begin_region(Region& region) { regions_.push_back(&region); }
   void end_region() { regions_.pop_back(); }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* names[] = {"transpose", "count", "size",    "min",    "max",   "select",
                                  "any",    "all",  "array",     "texture", "texture_size", "volume", "number", "vector", "identity",
-                                 "isnan",  "isfinite", "trace",    "radiance", "visible"};
+                                 "isnan",  "isfinite", "trace",    "radiance", "visible", "require"};
 
 }  // namespace
 
@@ -187,6 +187,20 @@ Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument
           "`" + name + "` needs " + what + ", this is " + describe(arguments.front().value));
     return Typed{};
   };
+  if (name == "require") {
+    if (!needs(2)) return {};
+    const Typed condition = to_truth(arguments[0].value, arguments[0].span);
+    if (condition.is_error()) return {};
+    if (arguments[1].value.kind != Kind::text) {
+      error("argument-type", arguments[1].span, "what `require` reports is a text, this is " +
+                                                    describe(arguments[1].value));
+      return {};
+    }
+    add_check(condition.parts.front(), arguments[1].value.text, program_place(span));
+    Typed nothing;
+    nothing.kind = Kind::nothing;
+    return nothing;
+  }
   if (name == "select") {
     if (!needs(3)) return {};
     const Typed condition = to_truth(arguments[0].value, arguments[0].span);

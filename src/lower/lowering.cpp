@@ -57,6 +57,12 @@ void Lowering::error(const char* code, const Span& span, std::string message, st
   diagnostics_->error(code, found.span, std::move(found.message), std::move(found.suggestion));
 }
 
+Span Lowering::program_place(const Span& span) const {
+  const Call* call = span.valid() && span.file != main_.file ? call_ : nullptr;
+  while (call && call->call_span.file != main_.file) call = call->caller;
+  return call && call->call_span.valid() ? call->call_span : span;
+}
+
 void Lowering::warning(const char* code, const Span& span, std::string message, std::string suggestion) {
   diagnostics_->warning(code, span, std::move(message), std::move(suggestion));
 }

@@ -174,6 +174,8 @@ class Lowering {
 
   Blame blame(const char* code, const Span& span, std::string message, std::string suggestion) const;
   void error(const char* code, const Span& span, std::string message, std::string suggestion = {});
+  // The call in the program itself that led to a place in another file.
+  Span program_place(const Span& span) const;
   void warning(const char* code, const Span& span, std::string message, std::string suggestion = {});
   Variables& variables() { return call_->variables; }
   ir::Value emit(ir::Op op, std::initializer_list<ir::Value> operands, std::int32_t imm = 0,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <string_view>
 
 namespace pse {
@@ -14,6 +15,8 @@ enum class Coordinate { x, y, u, v, px, py, point_x, point_y, point_z, span_near
 constexpr std::array<std::string_view, 11> coordinate_names = {
     "x",       "y",       "u",       "v",            "px",         "py",
     "point.0", "point.1", "point.2", "prepass.near", "prepass.far"};
+
+constexpr PlaneTransform no_transform = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
 // Where no prepass has looked, matter may be anywhere along a ray.
 constexpr double anywhere_on_ray = 1e30;
@@ -174,7 +177,7 @@ class PlaneSamples : public SampleSource {
 }  // namespace
 
 std::optional<PlaneTransform> plane_transform(const std::vector<double>& n) {
-  PlaneTransform m = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  PlaneTransform m = no_transform;
   if (n.size() == 16) {
     std::copy(n.begin(), n.end(), m.begin());
   } else if (n.size() == 9 || n.size() == 6) {
@@ -198,7 +201,8 @@ const std::vector<StreamName>& image_plane_names() {
       {"fps", 1, frame},    {"width", 1, frame},      {"height", 1, frame},
       {"aspect", 1, frame}, {"pixelsize", 1, frame},  {"pixel_freq", 1, frame},
       {"seed", 1, frame},   {"begin_frame", 1, frame},
-      {"prepass.near", 1, sample}, {"prepass.far", 1, sample}, {"prepass.step", 1, frame}};
+      {"prepass.near", 1, sample}, {"prepass.far", 1, sample}, {"prepass.step", 1, frame},
+      {"xform", 16, frame}};
   return names;
 }
 
@@ -222,6 +226,11 @@ void set_plane_uniforms(const ir::Module& module, const ImagePlane& plane, Frame
     for (const auto& [name, value] : values)
       if (module.inputs[i].name == name) state.uniforms[i] = static_cast<float>(value);
   }
+  const PlaneTransform xform = plane.transform.value_or(no_transform);
+  for (std::size_t k = 0; k < xform.size(); ++k)
+    for (std::size_t i = 0; i < module.inputs.size(); ++i)
+      if (module.inputs[i].name == "xform." + std::to_string(k))
+        state.uniforms[i] = static_cast<float>(xform[k]);
 }
 
 TileSource image_plane_source(const ir::Module& module, const ImagePlane& plane,

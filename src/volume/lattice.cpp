@@ -75,7 +75,7 @@ const std::vector<StreamName>& lattice_names() {
       {"fps", 1, frame},       {"width", 1, frame},      {"height", 1, frame}, {"depth", 1, frame},
       {"aspect", 1, frame},    {"pixelsize", 1, frame},  {"seed", 1, frame},
       {"pixel_freq", 1, frame}, {"begin_frame", 1, frame}, {"prepass.near", 1, sample},
-      {"prepass.far", 1, sample}, {"prepass.step", 1, frame}};
+      {"prepass.far", 1, sample}, {"prepass.step", 1, frame}, {"xform", 16, frame}};
   return names;
 }
 

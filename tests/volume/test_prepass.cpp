@@ -1,4 +1,5 @@
 // The prepass: the same picture from fewer steps, thin matter is found or told of; and slices.
+#include <algorithm>
 #include <cmath>
 
 #include "run_pse.h"
@@ -60,6 +61,31 @@ TEST_F(Prepass, FollowsAHairThinnerThanItsStep) {
   }
   EXPECT_GT(there, 80);
   EXPECT_EQ(missing, 0);
+}
+
+TEST_F(Prepass, ProvesTheRestEmptySoThatNothingThinIsLost) {
+  // Five crumbs of a pixel and a half, far apart: smaller than every coarse step and beside most probes.
+  program(
+      "    d = 0\n    for i in [1 .. 5]\n"
+      "        c = [0.37 * sin(2.1 * i) 0.41 * cos(1.7 * i) 0.3 * sin(i)]\n"
+      "        d = max(d, norm(p - c) < 1.1 / height ? 0.9 : 0)\n    return d\n");
+  const image::Image whole = render({}), fast = render({"--prepass", "4", "--stats"});
+  EXPECT_TRUE(contains(ended.err, "nothing is missed")) << ended.err;
+  EXPECT_FALSE(contains(ended.err, "warning")) << ended.err;
+  EXPECT_EQ(whole.planes, fast.planes);
+  EXPECT_GT(std::ranges::count_if(whole.planes[0], [](float v) { return v > 0; }), 5);
+}
+
+TEST_F(Prepass, HypertextureAloneSaysWhereItsMatterIs) {
+  file("a.pse",
+       "function density(p)\n    return soft_sphere(p, 0.5, 0.1)\n"
+       "color = hypertexture(density, step = 0.03)\n");
+  const image::Image whole = render({}), fast = render({"--prepass", "4"});
+  double apart = 0;
+  for (std::size_t k = 0; k < whole.planes.size(); ++k)
+    for (std::size_t i = 0; i < whole.planes[k].size(); ++i)
+      apart = std::max(apart, std::abs(double(whole.planes[k][i]) - double(fast.planes[k][i])));
+  EXPECT_LT(apart, 0.005);
 }
 
 TEST_F(Prepass, TellsOfSpecksThatItCannotSee) {

@@ -1,0 +1,57 @@
+// Where a ray's matter cannot be, with proof: the density's bounds over whole blocks of pixels and
+// stretches of depth (bounds/bounds.h), halved until a block is proven empty or is as small as
+// asked for. Unlike the samples of the prepass it misses nothing. Chapter, "Smoke", "Optimization".
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "app/knobs.h"
+#include "app/prepass.h"
+#include "stream/image_plane.h"
+#include "stream/sample_source.h"
+
+namespace pse::app {
+
+// What is not proven empty.
+struct Possible {
+  Spans spans;             // all of it, and where a ray has two stretches, what is between
+  double part = 1;         // of what the rays march through, the part in the spans
+  std::int64_t boxes = 0;  // whose bounds were computed
+};
+
+// Asks the program of the bounds for boxes: pixels x0 <= x <= x1, y0 <= y <= y1, and the depths
+// from near to far along their rays.
+class BoxBounds {
+ public:
+  // `program` is that of bound_outputs() for `span` with prepass.step = -1: the depth and the
+  // density there.
+  BoxBounds(const Program& program, const ImagePlane& plane, const std::vector<Knob>& knobs,
+            const std::vector<ExternalFunction>& externals, int threads, RunStatus& status);
+
+  struct Box {
+    int x = 0, y = 0, size = 0;        // in pixels
+    float near = -1e30f, far = 1e30f;  // receive the part that the program marches through
+    float least = 0, greatest = 0;     // receive the density's bounds
+  };
+  // False when cancelled or failed.
+  bool look(std::vector<Box>& boxes);
+
+ private:
+  const Program& program_;
+  std::vector<std::size_t> low_, high_;  // per named input: where its ends are in the module
+  ir::Module named_;                     // only the inputs, by the names that the plane knows
+  std::unique_ptr<SampleSource> places_;
+  FrameState state_;
+  int threads_;
+  RunStatus& status_;
+};
+
+// Halves boxes down to `finest` pixels, or as long as no more than `most` boxes are asked for.
+// Nothing when cancelled or failed.
+std::optional<Possible> find_possible(BoxBounds& bounds, int width, int height, int finest,
+                                      std::int64_t most);
+
+}  // namespace pse::app

@@ -29,6 +29,11 @@ class NameWriter {
  public:
   NameWriter(const ir::Module& module, std::shared_ptr<const Scene> scene, const Lens& lens);
 
+  // Whether an input is a slope of a name: "point.0$x" and its like.
+  static bool is_slope(const std::string& input) {
+    return input.find('$') != std::string::npos && find(input, 0).has_value();
+  }
+
   // planes[i] receives module input i, for those that are names of surfaces; null: not wanted.
   // Without `misses`, samples that show nothing get their `id` only.
   void write(std::span<const Sighting> sightings, std::span<float* const> planes,
@@ -37,7 +42,7 @@ class NameWriter {
  private:
   enum class What {
     point, place, normal, flat_normal, uv, id, depth, hit, backface, view, origin, direction,
-    pixelsize, pixel_freq, dpdx, dpdy, axis_x, axis_y, axis_z,
+    pixelsize, pixel_freq, dpdx, dpdy, place_dx, place_dy, axis_x, axis_y, axis_z,
     light_direction, light_color, light_position, light_radius
   };
   struct Wanted {
@@ -48,6 +53,7 @@ class NameWriter {
   };
   static std::optional<Wanted> find(const std::string& name, std::size_t lights);
   Vec3 value(const Sighting& s, const Wanted& wanted) const;
+  static Vec3 world_shift(const Sighting& s, const Vec3& axis);
   Vec3 shift(const Sighting& s, const Vec3& axis) const;
 
   std::shared_ptr<const Scene> scene_;
@@ -67,6 +73,9 @@ class SurfaceSource : public SampleSource {
   void fill(std::span<const double> x, std::span<const double> y,
             std::span<float* const> planes) const override;
   bool anywhere() const override { return true; }
+  bool brings_slope(const std::string& input) const override {
+    return NameWriter::is_slope(input);
+  }
 
  private:
   void fill_some(std::span<const double> x, std::span<const double> y,

@@ -91,8 +91,8 @@ StoredRefiner::Values StoredRefiner::run(std::span<float* const> inputs,
 
 Refined StoredRefiner::refine(const Tile& tile, std::span<float* const> inputs, RunStatus& status,
                               Counts& counts) const {
-  Refined refined{find_edge_pixels(tile, options_.filter.reach() > 1.01f ? 2 : 1),
-                  Values(output_of_.size())};
+  Refined refined(find_edge_pixels(tile, options_.filter.reach() > 1.01f ? 2 : 1),
+                  output_of_.size());
   const std::vector<Pixel>& pixels = refined.pixels;
   counts.filtered += static_cast<std::int64_t>(pixels.size());
   for (auto& values : refined.values) values.assign(pixels.size(), 0);
@@ -155,6 +155,9 @@ void StoredRefiner::advance(const Branch& branch, const Values& results, std::si
   const bool reaches_far = options_.filter.reach() > 1.01f;
   const std::uint32_t forced = branch.high | branch.low;
   bool explained = false;
+  // The neighbours that are on the same side of all conditions so far: what follows a condition may
+  // jump where it does.
+  unsigned list = branch.neighbours;
   for (const Condition& condition : conditions_) {
     if (branch.depth == most_depth) break;
     if (forced & condition.bit) continue;
@@ -165,26 +168,33 @@ void StoredRefiner::advance(const Branch& branch, const Values& results, std::si
     const float level = condition.is_step ? std::nearbyint(here) : 0;
     here -= level;
     std::array<float, 8> there{};
-    unsigned known = 0;
+    unsigned known = 0, same_side = 0;
     bool changes = false;
     std::size_t next_sample = first + 1;
     for (std::size_t n = 0; n < around.size(); ++n) {
       if (!(branch.neighbours >> n & 1)) continue;
       there[n] = values[next_sample++] - level;
-      if (std::isnan(there[n])) continue;
+      if (std::isnan(there[n]) || !(list >> n & 1)) continue;
       known |= 1u << n;
-      changes = changes || (there[n] > 0) != (here > 0);
+      if ((there[n] > 0) == (here > 0))
+        same_side |= 1u << n;
+      else
+        changes = true;
     }
     explained = explained || changes;
     if (!changes && !reaches_far) continue;
     FittedEdge edge{};
     const Fit fit = fit_edge(here, there, known, options_.filter, edge);
     if (fit == Fit::failed && changes) failed[branch.pixel] = true;
-    if (fit != Fit::edge) continue;
+    if (fit != Fit::edge) {
+      list = (list & ~known) | same_side;
+      continue;
+    }
     // Both sides, with the neighbours whose kernels reach into them.
     const float reach = options_.filter.reach();
     crossed[branch.pixel] = true;
     Branch high = branch, low = branch;
+    high.neighbours = low.neighbours = list;
     high.high |= condition.bit, low.low |= condition.bit;
     high.weight *= edge.share, low.weight *= 1 - edge.share;
     high.depth = low.depth = branch.depth + 1;

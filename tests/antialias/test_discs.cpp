@@ -1,10 +1,8 @@
-// Discs of every radius against the exact response of the kernel (shared with nothing: the areas are
-// integrated here). Small discs are the hard ones: a pixel may hold all of one, and all of its
+// Discs of every radius against the exact response of the kernel, integrated here. Small discs are the hard ones: a pixel may hold all of one, and all of its
 // neighbours miss it.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include "picture.h"
@@ -85,6 +83,13 @@ TEST(Discs, TheExactResponses) {
   EXPECT_EQ(cubic_share(0, 0, 0.5), 1);
   // The kernel (12 / pi) sqrt(1/4 - r^2) integrated to r: 1 - (1 - 4 r^2)^(3/2).
   EXPECT_NEAR(cubic_share(0, 0, 0.3), 1 - std::pow(1 - 4 * 0.09, 1.5), 1e-3);
+}
+
+// Within 1/255 wherever the disc lies between the pixels. The other radii of every_radius have a place
+// where they are not: docs/decisions/2026-11-28-fading-and-stored-pixels.md.
+TEST(Discs, OfRadiiThatHold) {
+  for (const double radius : {1.8, 2.3, 2.6, 3.7, 5.2})
+    EXPECT_LT(worst_error(FilterKind::cubic, radius), one_step) << radius;
 }
 
 // Run by hand (--gtest_also_run_disabled_tests): prints the worst error at each radius, in steps of

@@ -65,9 +65,9 @@ TEST(Slopes, OfSlopesAndStepsThereAreNone) {
 // The paper's own loop, printed in a program, is not touched; the library's fades by the pixel.
 TEST(Slopes, OnThePlaneThePixelIsThePictures) {
   const Picture picture = render(
-      "a = turbulence(4 * point) - smooth_turbulence(4 * point, pixel_freq / 4)\n"
+      "a = fbm(4 * point) - one_over_f(4 * point, 3 * pixel_freq / 4)\n"
       "b = pixel_frequency(point) - pixel_freq\n"
-      "c = one_over_f([3 * y, 3 * x]) - one_over_f([3 * y, 3 * x], pixel_freq / 3)\n",
+      "c = one_over_f([3 * y, 3 * x]) - one_over_f([3 * y, 3 * x], pixel_freq)\n",
       {.width = 40, .height = 40, .antialias = plain()});
   for (const float value : picture.plane("a")) EXPECT_NEAR(value, 0, 1e-5);
   for (const float value : picture.plane("b")) EXPECT_NEAR(value, 0, 1e-4);

@@ -26,7 +26,8 @@ struct Surface {
   }
 };
 
-using Row = std::array<double, 6>;  // of a system of up to five equations; the last is the right side
+using Row =
+    std::array<double, 6>;  // of a system of up to five equations; the last is the right side
 
 // Gauss's elimination; false where the equations do not tell.
 bool solve(std::array<Row, 5>& rows, std::size_t count, std::array<double, 5>& unknowns) {
@@ -113,8 +114,7 @@ Fit fit_edge(float here, const std::array<float, 8>& values, unsigned known, con
   edge.share = std::clamp(
       straight + edge.bend / 2 * moment * (1 - 0.75f * edge.bend * edge.distance), 0.0f, 1.0f);
   for (std::size_t i = 0; i < around.size(); ++i)
-    edge.distances[i] =
-        static_cast<float>(distance + around[i][0] * nx + around[i][1] * ny);
+    edge.distances[i] = static_cast<float>(distance + around[i][0] * nx + around[i][1] * ny);
   return Fit::edge;
 }
 

@@ -16,10 +16,10 @@ inline constexpr std::array<std::array<int, 2>, 8> around = {
 
 // Where the value is 0: a line that bends.
 struct FittedEdge {
-  float distance;    // of the pixel's centre, in pixels; positive where the value is
-  float nx, ny;      // towards larger values
-  float bend;        // how much the normal turns towards (-ny, nx), per pixel along it
-  float share;       // of the kernel on the positive side
+  float distance;  // of the pixel's centre, in pixels; positive where the value is
+  float nx, ny;    // towards larger values
+  float bend;      // how much the normal turns towards (-ny, nx), per pixel along it
+  float share;     // of the kernel on the positive side
   std::array<float, 8> distances;  // of the neighbours from the same line, unbent
 };
 

@@ -1,4 +1,5 @@
-// One walk over the main function; values of conditions within an `if` come out of it by its yields.
+// One walk over the main function; values of conditions within an `if` come out of it by its
+// yields.
 #include "antialias/force.h"
 
 #include <limits>
@@ -68,7 +69,8 @@ class Opening {
     const Emit emit(function_, out);
     const auto bit = static_cast<std::int32_t>(values_.size());
     const auto is_set = [&](Value mask) {
-      const Value low = emit(Op::iand, {emit(Op::ishr, {mask, emit.integer(bit)}), emit.integer(1)});
+      const Value low =
+          emit(Op::iand, {emit(Op::ishr, {mask, emit.integer(bit)}), emit.integer(1)});
       return emit(Op::ieq, {low, emit.integer(1)});
     };
     const Value high = is_set(high_), low = is_set(low_);
@@ -83,8 +85,10 @@ class Opening {
       const Value natural = compared.result();
       out.push_back(std::move(compared));
       const Value raised = emit(Op::bor, {natural, high});
-      out.push_back({.op = Op::band, .operands = {raised, emit(Op::bnot, {low})},
-                     .results = {outcome}, .span = in.span});
+      out.push_back({.op = Op::band,
+                     .operands = {raised, emit(Op::bnot, {low})},
+                     .results = {outcome},
+                     .span = in.span});
       return;
     }
     // A quarter beyond the nearest step, or before it.

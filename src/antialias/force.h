@@ -10,7 +10,7 @@ namespace pse::antialias {
 inline constexpr const char* force_high_name = "$high";
 inline constexpr const char* force_low_name = "$low";
 inline constexpr const char* condition_name = "$condition";  // and its number, from 0
-inline constexpr const char* step_suffix = "s";                // behind that, if it is a step
+inline constexpr const char* step_suffix = "s";              // behind that, if it is a step
 
 // Masks of conditions travel as floats, which hold whole numbers of 24 bits.
 inline constexpr std::size_t most_conditions = 24;

@@ -20,7 +20,7 @@ constexpr std::size_t batch = 4096;
 
 // A way through the program at one pixel, with some conditions forced.
 struct StoredRefiner::Branch {
-  std::size_t pixel;       // of Refined
+  std::size_t pixel;  // of Refined
   std::uint32_t high = 0, low = 0;
   unsigned neighbours = 0;  // those that take it too, as bits of `around`
   float weight = 1;
@@ -59,8 +59,8 @@ StoredRefiner::StoredRefiner(const Program& program, const FrameState& state, co
   }
 }
 
-StoredRefiner::Values StoredRefiner::run(std::span<float* const> inputs,
-                                         const Samples& samples, RunStatus& status) const {
+StoredRefiner::Values StoredRefiner::run(std::span<float* const> inputs, const Samples& samples,
+                                         RunStatus& status) const {
   const std::size_t outputs = program_.module().outputs.size(), count = samples.at.size();
   std::vector<bool> used;
   for (const ir::Input& input : program_.module().inputs)
@@ -75,11 +75,11 @@ StoredRefiner::Values StoredRefiner::run(std::span<float* const> inputs,
       if (!used[i]) continue;
       float* to = in.pointers()[i];
       for (std::size_t k = 0; k < size; ++k)
-        to[k] = i == high_                ? static_cast<float>(samples.high[first + k])
-                : i == low_               ? static_cast<float>(samples.low[first + k])
-                : from_[i] == nowhere     ? 0
+        to[k] = i == high_                    ? static_cast<float>(samples.high[first + k])
+                : i == low_                   ? static_cast<float>(samples.low[first + k])
+                : from_[i] == nowhere         ? 0
                 : inputs[from_[i]] == nullptr ? 0
-                                          : inputs[from_[i]][samples.at[first + k]];
+                                              : inputs[from_[i]][samples.at[first + k]];
     }
     program_.kernel->run_samples(state_, status, scratch, in.pointers().data(),
                                  out.pointers().data(), static_cast<std::int64_t>(size));
@@ -115,8 +115,7 @@ Refined StoredRefiner::refine(const Tile& tile, std::span<float* const> inputs, 
   while (!branches.empty() && !status.cancel) {
     Samples samples;
     const auto add = [&](const Branch& branch, int dx, int dy) {
-      samples.at.push_back(
-          tile.at(pixels[branch.pixel].x + dx, pixels[branch.pixel].y + dy));
+      samples.at.push_back(tile.at(pixels[branch.pixel].x + dx, pixels[branch.pixel].y + dy));
       samples.high.push_back(branch.high), samples.low.push_back(branch.low);
     };
     std::vector<std::size_t> first;
@@ -209,8 +208,7 @@ void StoredRefiner::advance(const Branch& branch, const Values& results, std::si
   // A loop, or a clamp, that no condition tells of.
   if (branch.depth == 0 && !explained && !refined.pixels[branch.pixel].silhouette)
     failed[branch.pixel] = true;
-  const std::size_t here =
-      tile.at(refined.pixels[branch.pixel].x, refined.pixels[branch.pixel].y);
+  const std::size_t here = tile.at(refined.pixels[branch.pixel].x, refined.pixels[branch.pixel].y);
   for (std::size_t o = 0; o < output_of_.size(); ++o) {
     const float value = results[output_of_[o]][first];
     // What a branch cannot compute where it does not belong.

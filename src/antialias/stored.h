@@ -12,8 +12,8 @@ namespace pse::antialias {
 
 class StoredRefiner {
  public:
-  // `known` is the picture. `program` is `shown` with open conditions (force.h); the first `outputs` outputs of `shown` are
-  // wanted. `state` has its frame computed. All must outlive this.
+  // `known` is the picture. `program` is `shown` with open conditions (force.h); the first
+  // `outputs` outputs of `shown` are wanted. `state` has its frame computed. All must outlive this.
   StoredRefiner(const Program& program, const FrameState& state, const Program& shown,
                 const Options& options, std::size_t outputs, const Rect& known);
 

@@ -74,8 +74,7 @@ class ModuleDeriver {
 
 class FunctionDeriver {
  public:
-  FunctionDeriver(ModuleDeriver& all, Function& function, const Active& active,
-                  Watcher* watcher)
+  FunctionDeriver(ModuleDeriver& all, Function& function, const Active& active, Watcher* watcher)
       : all_(all),
         function_(function),
         active_(active),
@@ -199,7 +198,8 @@ class FunctionDeriver {
       set(in.result(), made);
     }
     if (watcher_ && watching_)
-      watcher_->see(emit, in, [&](Value value) { return slopes(value); }, carried_);
+      watcher_->see(
+          emit, in, [&](Value value) { return slopes(value); }, carried_);
   }
 
   void branch(Instruction& in, std::vector<Instruction>& out) {
@@ -272,8 +272,7 @@ class FunctionDeriver {
     for (const Value operand : in.operands) with.push_back(slopes(operand) != none);
     const bool wanted =
         std::ranges::any_of(in.results, [&](Value value) { return is_active(value); });
-    if (!wanted || std::ranges::find(with, true) == with.end())
-      return out.push_back(std::move(in));
+    if (!wanted || std::ranges::find(with, true) == with.end()) return out.push_back(std::move(in));
     const Emit emit(function_, out);
     const auto callee = static_cast<std::uint32_t>(in.imm);
     const std::string& name = all_.module.functions[callee].name;

@@ -1,6 +1,6 @@
-// The derivative of a program by the place in the picture, in forward mode: every value that changes
-// from sample to sample carries its two slopes with it, rightward and downward, in the unit of one
-// pixel. passes/slopes.cpp answers a program's own questions with it (`Dx`, `filterwidth`),
+// The derivative of a program by the place in the picture, in forward mode: every value that
+// changes from sample to sample carries its two slopes with it, rightward and downward, in the unit
+// of one pixel. passes/slopes.cpp answers a program's own questions with it (`Dx`, `filterwidth`),
 // antialias/derive.cpp finds the edges around a sample.
 #pragma once
 

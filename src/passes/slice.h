@@ -1,5 +1,5 @@
-// Which values a set of values is computed from, by a walk from uses to definitions. Control is left
-// out: where it changes, there is a jump, and no slope.
+// Which values a set of values is computed from, by a walk from uses to definitions. Control is
+// left out: where it changes, there is a jump, and no slope.
 #pragma once
 
 #include <vector>

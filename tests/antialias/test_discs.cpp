@@ -1,5 +1,5 @@
-// Discs of every radius against the exact response of the kernel, integrated here. Small discs are the hard ones: a pixel may hold all of one, and all of its
-// neighbours miss it.
+// Discs of every radius against the exact response of the kernel, integrated here. Small discs are
+// the hard ones: a pixel may hold all of one, and all of its neighbours miss it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -55,24 +55,25 @@ double worst_error(FilterKind kind, double radius) {
     const double golden = 0.6180339887;
     const double cx = size / 2 + (place == 0 ? 0.5 : place == 1 ? 0 : std::fmod(place * golden, 1));
     const double cy = size / 2 + (place == 0 ? 0.5 : place == 1 ? 0 : (place - 1.5) / 10);
-    const Picture picture = render(
-        "_x = u * " + std::to_string(size) + "\n_y = (1 - v) * " + std::to_string(size) +
-            "\nc = (_x - " + text(cx) + ") ^ 2 + (_y - " + text(cy) + ") ^ 2 < " +
-            text(radius * radius) + " ? 1 : 0\n",
-        {.width = size, .height = size, .interpret = true, .antialias = procedural(kind)});
+    const Picture picture =
+        render("_x = u * " + std::to_string(size) + "\n_y = (1 - v) * " + std::to_string(size) +
+                   "\nc = (_x - " + text(cx) + ") ^ 2 + (_y - " + text(cy) + ") ^ 2 < " +
+                   text(radius * radius) + " ? 1 : 0\n",
+               {.width = size, .height = size, .interpret = true, .antialias = procedural(kind)});
     for (int y = 0; y < size; ++y)
       for (int x = 0; x < size; ++x) {
         const double dx = x + 0.5 - cx, dy = y + 0.5 - cy;
-        const double exact = kind == FilterKind::box ? box_share(dx, dy, radius)
-                                                     : cubic_share(dx, dy, radius);
+        const double exact =
+            kind == FilterKind::box ? box_share(dx, dy, radius) : cubic_share(dx, dy, radius);
         worst = std::max(worst, std::abs(double(picture.at(x, y)) - exact));
       }
   }
   return worst;
 }
 
-const std::vector<double> every_radius = {0.1, 0.2,  0.25, 0.35, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.15,
-                                          1.3, 1.45, 1.6,  1.8,  2.0, 2.3, 2.6, 3.7, 5.2, 7.0, 11.3};
+const std::vector<double> every_radius = {0.1, 0.2, 0.25, 0.35, 0.5,  0.6, 0.7, 0.8,
+                                          0.9, 1.0, 1.15, 1.3,  1.45, 1.6, 1.8, 2.0,
+                                          2.3, 2.6, 3.7,  5.2,  7.0,  11.3};
 
 // The integrals themselves: reference/antialias.json, disc_box, and a disc that holds the kernel.
 TEST(Discs, TheExactResponses) {
@@ -85,8 +86,8 @@ TEST(Discs, TheExactResponses) {
   EXPECT_NEAR(cubic_share(0, 0, 0.3), 1 - std::pow(1 - 4 * 0.09, 1.5), 1e-3);
 }
 
-// Within 1/255 wherever the disc lies between the pixels. The other radii of every_radius have a place
-// where they are not: docs/decisions/2026-11-28-fading-and-stored-pixels.md.
+// Within 1/255 wherever the disc lies between the pixels. The other radii of every_radius have a
+// place where they are not: docs/decisions/2026-11-28-fading-and-stored-pixels.md.
 TEST(Discs, OfRadiiThatHold) {
   for (const double radius : {1.8, 2.3, 2.6, 3.7, 5.2})
     EXPECT_LT(worst_error(FilterKind::cubic, radius), one_step) << radius;

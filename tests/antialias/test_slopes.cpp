@@ -1,5 +1,5 @@
-// What Dx, Dy and filterwidth say, against differences of neighbouring pixels, and that sums of noise
-// fade by it without becoming edges.
+// What Dx, Dy and filterwidth say, against differences of neighbouring pixels, and that sums of
+// noise fade by it without becoming edges.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,10 +37,13 @@ TEST(Slopes, AreTheDifferencesOfNeighbours) {
 
 // A loop's head, an early return, slopes of slopes (none), steps (none).
 const std::vector<const char*> others = {
-    "c = 0\n_f = 1\nwhile _f < 0.5 / filterwidth(3 * x * x + y)\n    c += Noise(_f * x, y) / _f\n    _f *= 2\n",
-    "function g(p)\n    if p.x < 0\n        return filterwidth(p.x * p.y)\n    return Dx(p.y)\nc = g([x y])\n",
+    "c = 0\n_f = 1\nwhile _f < 0.5 / filterwidth(3 * x * x + y)\n    c += Noise(_f * x, y) / _f\n  "
+    "  _f *= 2\n",
+    "function g(p)\n    if p.x < 0\n        return filterwidth(p.x * p.y)\n    return Dx(p.y)\nc = "
+    "g([x y])\n",
     "c = Dx(Dx(x * x)) + Dy(floor(7 * y))\n",
-    "c = turbulence([x y 0.3] * (1 + x)) + fbm([x * y, y]) + ridges(3 * point) + one_over_f(point)\n",
+    "c = turbulence([x y 0.3] * (1 + x)) + fbm([x * y, y]) + ridges(3 * point) + "
+    "one_over_f(point)\n",
 };
 
 TEST(Slopes, TheSameBitsEveryWay) {
@@ -56,8 +59,8 @@ TEST(Slopes, TheSameBitsEveryWay) {
 }
 
 TEST(Slopes, OfSlopesAndStepsThereAreNone) {
-  const Picture picture =
-      render("a = Dx(Dx(x * x))\nb = Dy(floor(7 * y))\nc = filterwidth(width)\n", {.antialias = plain()});
+  const Picture picture = render(
+      "a = Dx(Dx(x * x))\nb = Dy(floor(7 * y))\nc = filterwidth(width)\n", {.antialias = plain()});
   for (const char* name : {"a", "b", "c"})
     for (const float value : picture.plane(name)) EXPECT_EQ(value, 0) << name;
 }

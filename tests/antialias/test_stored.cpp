@@ -36,7 +36,8 @@ Picture render_stored(const std::string& text, const Ramp& image, const StoredOp
   compile.codegen.width = options.vector_width;
   SourceMap sources;
   Diagnostics diagnostics;
-  auto front = compile_front(sources, sources.add("test.pse", text), LowerHost{}, compile, diagnostics);
+  auto front =
+      compile_front(sources, sources.add("test.pse", text), LowerHost{}, compile, diagnostics);
   if (!front) throw std::runtime_error(print_text(diagnostics, sources, false));
   const auto programs = compile_programs(std::move(*front), compile, options.mode);
   if (!programs) throw std::runtime_error(programs.error());
@@ -51,7 +52,10 @@ Picture render_stored(const std::string& text, const Ramp& image, const StoredOp
     coordinates(tile);
     for (std::size_t i = 0; i < module.inputs.size(); ++i) {
       const std::string& name = module.inputs[i].name;
-      const Ramp* ramp = name == "image" ? &image : name == "other" ? &other : name == "id" ? &id : nullptr;
+      const Ramp* ramp = name == "image"   ? &image
+                         : name == "other" ? &other
+                         : name == "id"    ? &id
+                                           : nullptr;
       if (ramp == nullptr) continue;
       float* out = tile.planes[i];
       for (int y = tile.rect.y0; y < tile.rect.y1; ++y)
@@ -73,7 +77,8 @@ Picture render_stored(const std::string& text, const Ramp& image, const StoredOp
     for (std::size_t o = 0; o < picture.planes.size(); ++o)
       for (int y = tile.rect.y0; y < tile.rect.y1; ++y)
         for (int x = tile.rect.x0; x < tile.rect.x1; ++x)
-          picture.planes[o][static_cast<std::size_t>((y - window.y0) * picture.width + x - window.x0)] =
+          picture.planes[o][static_cast<std::size_t>((y - window.y0) * picture.width + x -
+                                                     window.x0)] =
               tile.planes[o][(y - tile.rect.y0) * tile.rect.width() + x - tile.rect.x0];
   };
   const Host host{[&](const Program& program) {
@@ -94,7 +99,8 @@ Picture render_stored(const std::string& text, const Ramp& image, const StoredOp
 }
 
 Ramp half_plane(double degrees, double out) {
-  const double nx = std::cos(degrees * std::numbers::pi / 180), ny = std::sin(degrees * std::numbers::pi / 180);
+  const double nx = std::cos(degrees * std::numbers::pi / 180),
+               ny = std::sin(degrees * std::numbers::pi / 180);
   return [=](double x, double y) { return 0.5 + 0.1 * ((x - 16) * nx + (y - 16) * ny - out); };
 }
 
@@ -103,7 +109,8 @@ const std::string threshold = "if image > 0.5\n    c = 1\nelse\n    c = 0\n";
 TEST(Stored, HalfPlanesAtEveryAngleAreExact) {
   for (int step = 0; step < 24; ++step) {
     const double angle = step * 15 + 3.7, out = 0.37 * step - 4;
-    const double nx = std::cos(angle * std::numbers::pi / 180), ny = std::sin(angle * std::numbers::pi / 180);
+    const double nx = std::cos(angle * std::numbers::pi / 180),
+                 ny = std::sin(angle * std::numbers::pi / 180);
     const Picture picture = render_stored(threshold, half_plane(angle, out), {.interpret = true});
     double worst = 0;
     for (int y = 0; y < 32; ++y)
@@ -136,8 +143,8 @@ double share_of_disc(double a, double radius) {
 }
 
 TEST(Stored, DiscsOfRampsAreExact) {
-  // The fit is exact where the ramp is one of r^2. One of r has a tip, and bends differently at each
-  // neighbour: below a radius of 5 pixels that shows.
+  // The fit is exact where the ramp is one of r^2. One of r has a tip, and bends differently at
+  // each neighbour: below a radius of 5 pixels that shows.
   for (const double radius : {12.1, 7.3, 4.6, 3.1, 2.2})
     for (const bool squared : {true, false}) {
       if (!squared && radius < 5) continue;
@@ -150,8 +157,9 @@ TEST(Stored, DiscsOfRampsAreExact) {
       double worst = 0;
       for (int y = 0; y < 32; ++y)
         for (int x = 0; x < 32; ++x)
-          worst = std::max(worst, std::abs(picture.at(x, y) -
-                                           share_of_disc(std::hypot(x + 0.5 - cx, y + 0.5 - cy), radius)));
+          worst = std::max(worst,
+                           std::abs(picture.at(x, y) -
+                                    share_of_disc(std::hypot(x + 0.5 - cx, y + 0.5 - cy), radius)));
       EXPECT_LT(worst, one_step) << radius << (squared ? " of r^2" : " of r");
     }
 }
@@ -173,11 +181,14 @@ TEST(Stored, BranchesAreRunAtThePixelWithItsOwnValues) {
 // multiply, as LERP within LERP does.
 TEST(Stored, NestedConditionsWithIncompleteNeighbourhoods) {
   const Picture picture = render_stored(
-      "if image > 0.5\n    if other > 0.5\n        c = 1\n    else\n        c = 0.25\nelse\n    c = 0\n",
+      "if image > 0.5\n    if other > 0.5\n        c = 1\n    else\n        c = 0.25\nelse\n    c "
+      "= 0\n",
       half_plane(10, 0.2), {.interpret = true}, half_plane(105, 1.3));
   const auto share = [&](double degrees, double out, int x, int y) {
-    const double nx = std::cos(degrees * std::numbers::pi / 180), ny = std::sin(degrees * std::numbers::pi / 180);
-    return double(Filter().share(static_cast<float>((x + 0.5 - 16) * nx + (y + 0.5 - 16) * ny - out), 1, 0));
+    const double nx = std::cos(degrees * std::numbers::pi / 180),
+                 ny = std::sin(degrees * std::numbers::pi / 180);
+    return double(
+        Filter().share(static_cast<float>((x + 0.5 - 16) * nx + (y + 0.5 - 16) * ny - out), 1, 0));
   };
   double worst = 0;
   for (int y = 0; y < 32; ++y)
@@ -190,7 +201,8 @@ TEST(Stored, NestedConditionsWithIncompleteNeighbourhoods) {
 }
 
 TEST(Stored, StepsAreEdges) {
-  const Picture picture = render_stored("c = floor(10 * image) / 10\n", half_plane(20, 0.1), {.interpret = true});
+  const Picture picture =
+      render_stored("c = floor(10 * image) / 10\n", half_plane(20, 0.1), {.interpret = true});
   const double nx = std::cos(std::numbers::pi / 9), ny = std::sin(std::numbers::pi / 9);
   for (int y = 2; y < 30; ++y)
     for (int x = 2; x < 30; ++x) {
@@ -202,10 +214,16 @@ TEST(Stored, StepsAreEdges) {
 
 // Many programs; nothing depends on how the picture is cut.
 TEST(Stored, TheSameBitsInEveryPiece) {
-  const Ramp disc = [](double x, double y) { return 0.5 + 0.03 * (9.3 - std::hypot(x - 21.4, y - 17.9)); };
-  const Ramp wave = [](double x, double y) { return 0.5 + 0.4 * std::sin(0.3 * x) * std::cos(0.23 * y + 0.1 * x); };
+  const Ramp disc = [](double x, double y) {
+    return 0.5 + 0.03 * (9.3 - std::hypot(x - 21.4, y - 17.9));
+  };
+  const Ramp wave = [](double x, double y) {
+    return 0.5 + 0.4 * std::sin(0.3 * x) * std::cos(0.23 * y + 0.1 * x);
+  };
   for (const std::string& text :
-       {threshold, std::string("if image > 0.5\n    if other > 0.6\n        c = x\n    else\n        c = other\nelse\n    c = floor(5 * other)\n"),
+       {threshold,
+        std::string("if image > 0.5\n    if other > 0.6\n        c = x\n    else\n        c = "
+                    "other\nelse\n    c = floor(5 * other)\n"),
         std::string("c = 0\nfor i in [1 .. 4]\n    if other > i / 5\n        c += image\n"),
         std::string("n = 0\nt = other\nwhile t < 0.9\n    t += 0.21\n    n += 1\nc = n\n")}) {
     const auto with = [&](StoredOptions options) {
@@ -213,8 +231,10 @@ TEST(Stored, TheSameBitsInEveryPiece) {
       return render_stored(text, disc, options, wave);
     };
     const Picture whole = with({.tile = 512});
-    for (const int tile : {8, 33}) EXPECT_EQ(with({.tile = tile, .threads = 2}).planes, whole.planes) << text << tile;
-    for (const int width : {1, 4, 8}) EXPECT_EQ(with({.vector_width = width}).planes, whole.planes) << text;
+    for (const int tile : {8, 33})
+      EXPECT_EQ(with({.tile = tile, .threads = 2}).planes, whole.planes) << text << tile;
+    for (const int width : {1, 4, 8})
+      EXPECT_EQ(with({.vector_width = width}).planes, whole.planes) << text;
     EXPECT_EQ(with({.interpret = true}).planes, whole.planes) << text;
     const Picture part = with({.tile = 16, .clip = {11, 7, 40, 30}});
     for (int y = 7; y < 30; ++y)
@@ -226,22 +246,27 @@ TEST(Stored, TheSameBitsInEveryPiece) {
 TEST(Stored, ObjectsAreNotMixed) {
   const Ramp id = [](double x, double) { return x < 16 ? 1.0 : 2.0; };
   const Ramp image = [](double x, double y) { return x < 16 ? 0.1 + 0.01 * y : 0.9 + 0.01 * y; };
-  const Picture picture = render_stored(threshold + "c += 0 * id\n", image, {.interpret = true}, {}, id);
+  const Picture picture =
+      render_stored(threshold + "c += 0 * id\n", image, {.interpret = true}, {}, id);
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 32; ++x) EXPECT_EQ(picture.at(x, y), x < 16 ? 0 : 1);
 }
 
 TEST(Stored, WhatCannotBeToldIsLeftAndCounted) {
   // Grain: no plane fits.
-  const Ramp grain = [](double x, double y) { return std::fmod(std::abs(std::sin(12.9 * x + 78.2 * y) * 43758.5), 1); };
+  const Ramp grain = [](double x, double y) {
+    return std::fmod(std::abs(std::sin(12.9 * x + 78.2 * y) * 43758.5), 1);
+  };
   const Picture picture = render_stored(threshold, grain, {.interpret = true});
   const Picture none = render_stored(threshold, grain, {.interpret = true, .mode = Mode::none});
   EXPECT_GT(picture.counts.left, 300);
   int same = 0;
-  for (std::size_t i = 0; i < picture.plane().size(); ++i) same += picture.plane()[i] == none.plane()[i];
+  for (std::size_t i = 0; i < picture.plane().size(); ++i)
+    same += picture.plane()[i] == none.plane()[i];
   EXPECT_GE(same, picture.counts.left);
   // A branch that cannot be computed where it does not belong leaves the pixel as it is.
-  const Picture roots = render_stored("c = 0\nif image > 0.5\n    c = sqrt(image - 0.5)\n", half_plane(30, 0.3), {.interpret = true});
+  const Picture roots = render_stored("c = 0\nif image > 0.5\n    c = sqrt(image - 0.5)\n",
+                                      half_plane(30, 0.3), {.interpret = true});
   for (const float value : roots.plane()) EXPECT_FALSE(std::isnan(value));
 }
 

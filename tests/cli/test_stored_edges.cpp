@@ -25,8 +25,9 @@ class StoredEdges : public CommandLine {
 
 TEST_F(StoredEdges, ARampInAFileIsCutCleanly) {
   // A half-plane at atan(0.75), 0.3 pixels beyond the middle of 32 x 32 pixels.
-  file("ramp.pse", "_x = u * 32\n_y = (1 - v) * 32\n"
-                   "ramp = 0.5 + 0.1 * (0.8 * (_x - 16) + 0.6 * (_y - 16) - 0.3)\n");
+  file("ramp.pse",
+       "_x = u * 32\n_y = (1 - v) * 32\n"
+       "ramp = 0.5 + 0.1 * (0.8 * (_x - 16) + 0.6 * (_y - 16) - 0.3)\n");
   render({"ramp.pse", "--res", "32x32", "--antialias", "none"}, "ramp.exr");
   file("cut.pse", "if m.ramp > 0.5\n    c = 1\nelse\n    c = 0\n");
   const image::Image cut = render({"cut.pse", "m=ramp.exr", "--stats=json"}, "cut.exr");
@@ -39,8 +40,9 @@ TEST_F(StoredEdges, ARampInAFileIsCutCleanly) {
 }
 
 TEST_F(StoredEdges, ACheckeredTorusShadedAgainIsNearTheTracedOne) {
-  file("checks.pse", "k = mod(floor(4 * point.x) + floor(4 * point.y + 0.5) + floor(4 * point.z), 2)\n"
-                     "color = white * k\n");
+  file("checks.pse",
+       "k = mod(floor(4 * point.x) + floor(4 * point.y + 0.5) + floor(4 * point.z), 2)\n"
+       "color = white * k\n");
   ASSERT_EQ(pse({"trace", "torus", "-o", "g.exr", "--res", "128x128"}).status, 0);
   const image::Image traced = render({"checks.pse", "--on", "torus", "--res", "128x128"}, "a.exr");
   const image::Image plain =

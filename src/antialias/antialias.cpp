@@ -6,6 +6,7 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "antialias/stored.h"
 #include "stream/planes.h"
 #include "stream/tiling.h"
 
@@ -22,7 +23,6 @@ struct Placed {
 
   Placed(const Program& program, const Host& host, RunStatus& status)
       : state(host.state(program)), samples(host.samples(program.module())) {
-    set_even_slopes(program.module(), *samples, state);
     program.kernel->run_frame(state, status);
     runner.emplace(program, state, *samples);
   }
@@ -63,7 +63,9 @@ class Execution {
     const Placed quiet(*programs_.quiet, host_, unchecked);
     if (status_.cancel) return {RunEnd::cancelled};
     const bool anywhere = quiet.samples->anywhere();
-    procedural_ = antialias_.mode == Mode::procedural && programs_.has_paths && anywhere;
+    const bool wanted = antialias_.mode == Mode::procedural && programs_.has_paths;
+    stored_ = wanted && host_.stored && programs_.conditions.valid();
+    procedural_ = wanted && (anywhere || stored_);
     supersample_ = antialias_.mode == Mode::supersample;
     apron_ = procedural_ ? apron_of(antialias_.filter) : 0;
 
@@ -78,6 +80,7 @@ class Execution {
     plan.fill = [&](std::int64_t tile, std::span<float* const> planes) {
       const Rect rect = area(tile);
       source_({rect, size_of(rect), planes});
+      if (stored_) extend_stored(rect, *host_.stored, planes);
     };
     // What tells objects apart, where the program or its source has it.
     const auto& inputs_of = shown.module().inputs;
@@ -103,11 +106,16 @@ class Execution {
       const Borrowed work(*this);
       if (supersample_) return put(tile, all->supersample(pixels_of(tile.rect), *work, status));
       Counts counts;
-      const Refiner* refiner = edges();
-      if (refiner == nullptr) return;
-      const Refined refined = refiner->refine(tile, *work, status, counts);
+      std::optional<Refined> refined;
+      if (stored_) {
+        if (const StoredRefiner* refiner = conditions())
+          refined = refiner->refine(tile, inputs, status, counts);
+      } else if (const Refiner* refiner = edges()) {
+        refined = refiner->refine(tile, *work, status, counts);
+      }
+      if (!refined) return;
       cut_apron(tile);
-      put({tile.rect, tile.rect, outputs, programs_.outputs}, refined);
+      put({tile.rect, tile.rect, outputs, programs_.outputs}, *refined);
       const std::lock_guard lock(mutex_);
       counts_ += counts;
     };
@@ -177,6 +185,23 @@ class Execution {
     return refiner_ && !status_.cancel ? &*refiner_ : nullptr;
   }
 
+  // Likewise where samples are stored.
+  const StoredRefiner* conditions() {
+    std::call_once(once_, [&] {
+      while (programs_.conditions.wait_for(std::chrono::milliseconds(5)) ==
+             std::future_status::timeout)
+        if (status_.cancel) return;
+      const auto& program = programs_.conditions.get();
+      if (!program) throw std::runtime_error(program.error());
+      open_state_ = host_.state(**program);
+      RunStatus unchecked{.outer = &status_};
+      (*program)->kernel->run_frame(*open_state_, unchecked);
+      stored_refiner_.emplace(**program, *open_state_, *programs_.shown, antialias_,
+                              programs_.outputs, *host_.stored);
+    });
+    return stored_refiner_ && !status_.cancel ? &*stored_refiner_ : nullptr;
+  }
+
   static std::vector<Pixel> pixels_of(const Rect& rect) {
     std::vector<Pixel> pixels;
     for (int y = rect.y0; y < rect.y1; ++y)
@@ -236,11 +261,13 @@ class Execution {
   Counts& counts_;
   const Tiling tiling_;
   int apron_ = 0;
-  bool procedural_ = false, supersample_ = false;
+  bool procedural_ = false, supersample_ = false, stored_ = false;
   const Placed* quiet_ = nullptr;
   std::once_flag once_;
   std::optional<Placed> edge_program_;
   std::optional<Refiner> refiner_;
+  std::optional<FrameState> open_state_;
+  std::optional<StoredRefiner> stored_refiner_;
   std::vector<std::unique_ptr<Work>> works_;  // those that are not in use
   std::mutex mutex_;                          // of counts_ and works_
 };

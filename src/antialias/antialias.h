@@ -9,12 +9,15 @@
 //   tile       neighbours with different paths, across which the picture jumps
 //   refine     one edge: both sides and the kernel's share (filter); more: supersample (spread)
 //   places     running a program anywhere (stream/sample_source.h)
+//   stored     where samples are known at pixels only: conditions laid open (force), their values
+//              fitted to neighbours (fit)
 //
 // A pixel's whole path is bifurcated, not each conditional by itself: for one edge under the kernel
 // that is the chapter's LERP, and what follows the conditional need not be linear.
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "antialias/refine.h"
 
@@ -25,6 +28,8 @@ namespace pse::antialias {
 struct Host {
   std::function<FrameState(const Program&)> state;
   std::function<std::unique_ptr<SampleSource>(const ir::Module&)> samples;
+  // Where samples are known at pixels only: the pixels of the picture.
+  std::optional<Rect> stored = {};
 };
 
 // As pse::execute() of programs.shown, whose state the host makes; `source` fills the tiles of

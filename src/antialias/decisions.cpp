@@ -1,9 +1,9 @@
-// Finding cuts by operator and rate, and the kinks that bend them by a walk from uses to
-// definitions.
+// Finding cuts by operator and rate, and the kinks that bend them by what they are computed from.
 #include "antialias/decisions.h"
 
 #include "passes/passes.h"
 #include "passes/rewrite.h"
+#include "passes/slice.h"
 
 namespace pse::antialias {
 namespace {
@@ -13,67 +13,6 @@ using ir::Instruction;
 using ir::Op;
 using ir::Region;
 using ir::Value;
-
-// Which values a set of values is computed from. Control is left out: where it changes, there is a
-// jump already.
-class Slice {
- public:
-  explicit Slice(const Function& function)
-      : function_(function), needed_(function.values.size()), arrays_(function.arrays.size()) {}
-
-  void need(Value value) { needed_[value] = true; }
-  bool operator[](Value value) const { return needed_[value]; }
-
-  // Until nothing changes; a loop needs a round for each value that its turns hand on.
-  void run() {
-    do {
-      changed_ = false;
-      walk(function_.body);
-    } while (changed_);
-  }
-
- private:
-  void mark(Value value) {
-    if (needed_[value]) return;
-    needed_[value] = true;
-    changed_ = true;
-  }
-
-  void walk(const Region& region) {
-    for (auto in = region.body.rbegin(); in != region.body.rend(); ++in) visit(*in);
-  }
-
-  void visit(const Instruction& in) {
-    if (in.op == Op::if_) {
-      for (std::size_t i = 0; i < in.results.size(); ++i)
-        if (needed_[in.results[i]])
-          for (const Region& region : in.regions) mark(region.yields[i]);
-    } else if (in.op == Op::loop) {
-      for (std::size_t i = 0; i < in.results.size(); ++i) {
-        if (!needed_[in.results[i]] && !needed_[in.regions[0].params[i]] &&
-            !needed_[in.regions[1].params[i]])
-          continue;
-        mark(in.results[i]), mark(in.regions[0].params[i]), mark(in.regions[1].params[i]);
-        mark(in.operands[i]), mark(in.regions[1].yields[i]);
-      }
-    } else if (in.op == Op::array_store) {
-      if (arrays_[static_cast<std::size_t>(in.imm)]) mark(in.operands[1]);
-    } else {
-      bool wanted = false;
-      for (const Value result : in.results) wanted = wanted || needed_[result];
-      if (!wanted) return;
-      for (const Value operand : in.operands) mark(operand);
-      if (in.op == Op::array_load && !arrays_[static_cast<std::size_t>(in.imm)])
-        arrays_[static_cast<std::size_t>(in.imm)] = changed_ = true;
-    }
-    for (const Region& region : in.regions) walk(region);
-  }
-
-  const Function& function_;
-  std::vector<bool> needed_;
-  std::vector<bool> arrays_;
-  bool changed_ = false;
-};
 
 // Which values depend on the pixel's own number, px and py, and so have no value between pixels:
 // those that would still differ from sample to sample if nothing but px and py did.
@@ -126,7 +65,7 @@ Decisions find_decisions(ir::Module& module) {
   Decisions found;
   found.forks.resize(main.values.size());
   found.bends.resize(main.values.size());
-  Slice bends(main);
+  passes::Slice bends(main);
   // Dither is no edge: what decides by px and py decides anew in each pixel, and a ray marcher with
   // a jittered step does so all along its way.
   found.dithered = made_of_pixels(module);

@@ -4,10 +4,11 @@
 
 #include <array>
 
-#include "antialias/emit.h"
+#include "passes/emit.h"
 
 namespace pse::antialias {
 
+using passes::Emit;
 using EdgeState = std::array<ir::Value, 6>;
 
 EdgeState start_edges(const Emit& emit);

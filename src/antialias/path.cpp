@@ -2,7 +2,7 @@
 // decisions; every turn of a loop multiplies what it adds to.
 #include "antialias/path.h"
 
-#include "antialias/emit.h"
+#include "passes/emit.h"
 #include "passes/rewrite.h"
 
 namespace pse::antialias {
@@ -13,6 +13,7 @@ using ir::Instruction;
 using ir::Op;
 using ir::Region;
 using ir::Value;
+using passes::Emit;
 
 class Paths {
  public:

@@ -32,21 +32,6 @@ std::vector<InputSlope> input_slopes(const ir::Module& module) {
   return found;
 }
 
-void set_even_slopes(const ir::Module& module, const SampleSource& source, FrameState& state) {
-  std::vector<bool> wanted(module.inputs.size());
-  const std::vector<InputSlope> slopes = input_slopes(module);
-  for (const InputSlope& slope : slopes)
-    if (slope.is_even) wanted[slope.of] = true;
-  const Planes low(wanted, 1), high(wanted, 1);
-  for (const InputSlope& slope : slopes) {
-    if (!slope.is_even) continue;
-    const double zero[] = {0}, one[] = {1};
-    source.fill(zero, zero, low.pointers());
-    source.fill(slope.along_x ? one : zero, slope.along_x ? zero : one, high.pointers());
-    state.uniforms[slope.input] = high.pointers()[slope.of][0] - low.pointers()[slope.of][0];
-  }
-}
-
 PlaceRunner::PlaceRunner(const Program& program, const FrameState& state,
                          const SampleSource& source)
     : program_(program), state_(state), source_(source) {
@@ -55,7 +40,7 @@ PlaceRunner::PlaceRunner(const Program& program, const FrameState& state,
   sloping_.resize(inputs.size());
   for (std::size_t i = 0; i < inputs.size(); ++i) used_[i] = inputs[i].rate == ir::Rate::sample;
   for (const InputSlope& slope : input_slopes(program.module())) {
-    if (slope.is_even) continue;
+    if (slope.is_even || source.brings_slope(inputs[slope.input].name)) continue;
     slopes_.push_back(slope);
     sloping_[slope.of] = true;
   }

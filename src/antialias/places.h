@@ -45,12 +45,9 @@ struct Work {
 struct InputSlope {
   std::size_t input, of;
   bool along_x;
-  bool is_even;  // the same everywhere, and a uniform
+  bool is_even;  // the same everywhere, and a uniform that the stream sets
 };
 std::vector<InputSlope> input_slopes(const ir::Module& module);
-
-// Sets the uniforms of even slopes; to be done before the frame is computed.
-void set_even_slopes(const ir::Module& module, const SampleSource& source, FrameState& state);
 
 class PlaceRunner {
  public:

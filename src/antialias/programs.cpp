@@ -1,6 +1,7 @@
 // Compiling them from one lowered module.
 #include "antialias/programs.h"
 
+#include "antialias/force.h"
 #include "antialias/path.h"
 #include "passes/passes.h"
 
@@ -38,6 +39,17 @@ std::expected<Programs, std::string> compile_programs(CompiledFront front,
   const Decisions decisions = find_decisions(copy.module);
   if (!decisions.any) return finish(std::move(front));
   programs.has_paths = true;
+  const CompileOptions plain{.codegen = options.codegen,
+                             .interpret = options.interpret,
+                             .optimize = options.optimize};
+  programs.conditions = std::async(std::launch::deferred, [open = copy, plain]() mutable {
+                          const std::size_t own = open.module.outputs.size();
+                          remove_checks(open.module);
+                          open_conditions(open.module);
+                          for (std::size_t o = own; o < open.module.outputs.size(); ++o)
+                            open.program.outputs.push_back({open.module.outputs[o].name, 1, {}});
+                          return compile_back(std::move(open), plain);
+                        }).share();
   CompiledFront edges = copy;
   // Where nothing jumps there is seldom a visible edge, and it may never be asked for.
   const auto when = decisions.any_jump ? std::launch::async : std::launch::deferred;

@@ -31,6 +31,8 @@ struct Programs {
   // paths then tell objects apart.
   using Result = std::expected<std::shared_ptr<const Program>, std::string>;
   std::shared_future<Result> edges;
+  // The program with its conditions laid open (antialias/force.h), compiled when it is asked for.
+  std::shared_future<Result> conditions;
   bool has_paths = false;
 };
 

@@ -15,9 +15,11 @@ struct Counts {
   std::int64_t filtered = 0;      // looked at by the high-contrast filter: an edge may be near
   std::int64_t blended = 0;       // one edge: both sides, by the kernel's share
   std::int64_t supersampled = 0;  // run at more samples
+  std::int64_t left = 0;          // of stored pixels: with an edge that nothing tells more of
 
   Counts& operator+=(const Counts& other) {
     filtered += other.filtered, blended += other.blended, supersampled += other.supersampled;
+    left += other.left;
     return *this;
   }
 };

@@ -49,7 +49,8 @@ CompileOptions compile_options(const RenderOptions& options, const InputImages& 
   compile.lower.stream = images.names();
   if (surfaces != nullptr)
     for (const StreamName& name : surfaces->names()) compile.lower.stream.push_back(name);
-  for (const StreamName& name : image_plane_names()) compile.lower.stream.push_back(name);
+  for (const StreamName& name : image_plane_names(options.transform))
+    compile.lower.stream.push_back(name);
   compile.lower.outputs = wanted_variables(options, tree);
   return compile;
 }

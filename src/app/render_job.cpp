@@ -245,7 +245,8 @@ RunResult RenderJob::compute(const TileSource& source, FrameWriter* writer) {
       [this](const ir::Module& module) {
         return surfaces_ != nullptr ? surfaces_->samples(module, plane_)
                                     : image_plane_samples(module, plane_);
-      }};
+      },
+      reads_stored() ? std::optional(Rect{0, 0, plane_.width, plane_.height}) : std::nullopt};
   return antialias::execute(programs_, host, antialias(), source, sink,
                             {.window = window_,
                              .tile_width = tile,
@@ -258,12 +259,17 @@ RunResult RenderJob::compute(const TileSource& source, FrameWriter* writer) {
 }
 
 // Pixels of images are known at their centres only.
+bool RenderJob::reads_stored() const {
+  if (surfaces_ != nullptr && surfaces_->is_stored()) return true;
+  return std::ranges::any_of(images_.names(), [&](const StreamName& name) {
+    return std::ranges::find(program_->reads, name.name) != program_->reads.end();
+  });
+}
+
 antialias::Options RenderJob::antialias() const {
   antialias::Options antialias = options_.antialias;
-  if (surfaces_ != nullptr && surfaces_->is_stored()) antialias.mode = antialias::Mode::none;
-  for (const StreamName& name : images_.names())
-    if (std::ranges::find(program_->reads, name.name) != program_->reads.end())
-      antialias.mode = antialias::Mode::none;
+  if (antialias.mode == antialias::Mode::supersample && reads_stored())
+    antialias.mode = antialias::Mode::none;
   return antialias;
 }
 

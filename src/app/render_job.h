@@ -30,6 +30,7 @@ class RenderJob {
   bool skip_done(int frame, const std::vector<std::string>& recipes) const;
   FrameState frame_state(const Program& program) const;
   antialias::Options antialias() const;
+  bool reads_stored() const;
   image::Result<std::unique_ptr<image::ImageWriter>> open_writer(std::size_t file,
                                                                  const std::string& name,
                                                                  const image::ImageSpec& spec);

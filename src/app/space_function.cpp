@@ -15,7 +15,7 @@ SpaceFunction::SpaceFunction(const std::string& path, const RenderOptions& optio
     : path_(path) {
   ProgramFile file = read_program(path, session);
   CompileOptions compile_with;
-  compile_with.lower.stream = {{"point", 3}};
+  compile_with.lower.stream = {{"point", 3, ir::Rate::sample, ir::InputSlopes::of_frame}};
   for (const StreamName& name : image_plane_names())
     if (name.rate == ir::Rate::frame) compile_with.lower.stream.push_back(name);
   compile_with.interpret = options.interpret;

@@ -50,6 +50,9 @@ std::string stats_text(const RunStats& s) {
     out += fmt::format("antialias     {} pixels filtered, {} blended, {} supersampled\n",
                        pixels(s.antialias.filtered), pixels(s.antialias.blended),
                        pixels(s.antialias.supersampled));
+  if (s.antialias.left > 0)
+    out += fmt::format("              {} left as they are: stored pixels tell no more of their edges\n",
+                       pixels(s.antialias.left));
   if (s.compute_seconds > 0)
     out += fmt::format("speed         {:.2f} million samples per second, {:.1f} ns each\n",
                        s.samples / s.compute_seconds * 1e-6,
@@ -84,7 +87,8 @@ std::string stats_json(const RunStats& s) {
       {"antialias",
        {{"filtered", s.antialias.filtered},
         {"blended", s.antialias.blended},
-        {"supersampled", s.antialias.supersampled}}},
+        {"supersampled", s.antialias.supersampled},
+        {"left", s.antialias.left}}},
       {"samples_per_second", s.compute_seconds > 0 ? s.samples / s.compute_seconds : 0.0},
       {"compute_seconds", s.compute_seconds},
       {"total_seconds", s.total_seconds},

@@ -38,6 +38,9 @@ class Both : public SampleSource {
     first_->fill(x, y, planes), second_->fill(x, y, planes);
   }
   bool anywhere() const override { return first_->anywhere() && second_->anywhere(); }
+  bool brings_slope(const std::string& input) const override {
+    return second_->brings_slope(input);
+  }
 
  private:
   std::unique_ptr<SampleSource> first_, second_;
@@ -58,7 +61,7 @@ bool is_scene_name(const std::string& file) { return fs::path(file).extension() 
 
 const char* const trace_program =
     "P = place\nN = normal\nZ = depth\nalpha = hit\npoint = point\nuv = uv\nid = id\n"
-    "direction = direction\npixelsize = pixelsize\nbackface = backface\n";
+    "direction = direction\npixelsize = pixelsize\nbackface = backface\ndPdx = dPdx\ndPdy = dPdy\n";
 
 bool wants_surfaces(const RenderOptions& options) {
   return !options.on.empty() || !options.scene.empty();
@@ -202,15 +205,20 @@ antialias::Programs Surfaces::combine(std::vector<SurfaceProgram> programs,
                                       antialias::Mode mode) {
   programs_ = std::move(programs);
   using List = std::vector<std::shared_ptr<const Program>>;
-  List shown, quiet, edges;
+  List shown, quiet, edges, conditions;
   for (const SurfaceProgram& part : programs_) {
     if (const std::string problem = needs_a_scene(part.programs.shown->module());
         is_stored() && !problem.empty())
       throw usage_error(problem + ": a traced picture has none", "--on SHAPE or --scene FILE");
     shown.push_back(part.programs.shown);
     quiet.push_back(part.programs.quiet);
-    edges.push_back(nullptr);
-    if (!part.programs.edges.valid()) continue;
+    edges.push_back(nullptr), conditions.push_back(nullptr);
+    if (is_stored() && part.programs.conditions.valid()) {
+      const auto& compiled = part.programs.conditions.get();
+      if (!compiled) throw Failure(Exit::program, compiled.error());
+      conditions.back() = *compiled;
+    }
+    if (is_stored() || !part.programs.edges.valid()) continue;
     const auto& compiled = part.programs.edges.get();
     if (!compiled) throw Failure(Exit::program, compiled.error());
     edges.back() = *compiled;
@@ -220,7 +228,7 @@ antialias::Programs Surfaces::combine(std::vector<SurfaceProgram> programs,
     return surface::Shader::combined(joined_.back().shader);
   };
   antialias::Programs all;
-  all.has_paths = mode == antialias::Mode::procedural && !is_stored();
+  all.has_paths = mode == antialias::Mode::procedural;
   all.shown = all.quiet = add(shown, all.has_paths);
   all.outputs = all.shown->module().outputs.size() - (all.has_paths ? 1 : 0);
   for (const auto what : {surface::TraceCall::What::trace, surface::TraceCall::What::radiance,
@@ -228,11 +236,13 @@ antialias::Programs Surfaces::combine(std::vector<SurfaceProgram> programs,
     calls_.push_back(std::make_unique<surface::TraceCall>(
         surface::TraceCall{what, joined_.front().shader.get()}));
   if (quiet != shown) all.quiet = add(quiet, all.has_paths);
-  if (all.has_paths && edges != List(edges.size())) {
+  const auto ready = [&](const List& list) {
     std::promise<antialias::Programs::Result> made;
-    made.set_value(add(edges, false));
-    all.edges = made.get_future().share();
-  }
+    made.set_value(add(list, false));
+    return made.get_future().share();
+  };
+  if (all.has_paths && edges != List(edges.size())) all.edges = ready(edges);
+  if (all.has_paths && conditions != List(conditions.size())) all.conditions = ready(conditions);
   return all;
 }
 

@@ -93,6 +93,9 @@ bool Interpreter::run_instruction(const Instruction& in, Frame& frame) {
     case Op::input:
       frame[in.result()] = to_bits(environment_->inputs[index]);
       return true;
+    case Op::slope:
+      frame[in.result()] = to_bits(0.0f);
+      return true;
     case Op::table_f32:
     case Op::table_i32:
     case Op::bytes_add:

@@ -82,10 +82,15 @@ struct ByteTable {
   std::vector<std::uint8_t> entries;  // exactly 256
 };
 
+// Whether the stream can tell how much an input changes from pixel to pixel; of_frame: by the same
+// amount everywhere.
+enum class InputSlopes : std::uint8_t { none, of_frame, of_sample };
+
 // One float that the stream brings (rate sample) or that holds for a frame (knobs, frame, time).
 struct Input {
   std::string name;  // "point.0", "Radius"
   Rate rate = Rate::sample;
+  InputSlopes slopes = InputSlopes::none;
 };
 
 // One float that the program sets. body.yields of the entry function are in this order.

@@ -13,6 +13,7 @@ constexpr std::array table = {
     OpInfo{Op::const_i32, "const.i", "", "i", true, "the 32-bit integer `imm`"},
     OpInfo{Op::const_bool, "const.b", "", "b", true, "true if `imm` is not 0"},
     OpInfo{Op::input, "input", "", "f", true, "component `imm` of the flat list Module::inputs for this sample"},
+    OpInfo{Op::slope, "slope", "f", "f", true, "how much a changes from this sample to the pixel on its right (`imm` 0) or below it (1), by the program's derivative; passes/slopes puts the derivative in its place before anything runs, and where it has not, this is 0"},
     OpInfo{Op::fadd, "fadd", "ff", "f", true, "a + b"},
     OpInfo{Op::fsub, "fsub", "ff", "f", true, "a - b"},
     OpInfo{Op::fmul, "fmul", "ff", "f", true, "a * b"},

@@ -12,7 +12,7 @@ enum class Type : std::uint8_t { f32, i32, boolean };
 
 enum class Op : std::uint8_t {
   // constants and the sample's environment
-  const_f32, const_i32, const_bool, input,
+  const_f32, const_i32, const_bool, input, slope,
   // float arithmetic
   fadd, fsub, fmul, fdiv, fma, fneg, fabs, fsqrt, fmin, fmax, ffloor, fceil, ftrunc, fround,
   // float comparison

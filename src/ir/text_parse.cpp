@@ -335,6 +335,7 @@ class Parser {
       }
       case Op::const_i32:
       case Op::input:
+      case Op::slope:
       case Op::table_f32:
       case Op::table_i32:
       case Op::bytes_lookup:

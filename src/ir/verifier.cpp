@@ -165,6 +165,9 @@ class Verifier {
       case Op::input:
         if (is_called_) complain(in, "a called function has no inputs");
         return check_range(in, module_.inputs.size(), "input");
+      case Op::slope:
+        if (is_called_) complain(in, "a called function has no place in the picture");
+        return check_range(in, 2, "direction");
       case Op::table_f32:
         return check_range(in, module_.float_tables.size(), "float table");
       case Op::table_i32:

@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* names[] = {"transpose", "count", "size",    "min",    "max",   "select",
                                  "any",    "all",  "array",     "texture", "texture_size", "volume", "number", "vector", "identity",
-                                 "isnan",  "isfinite", "trace",    "radiance", "visible", "require"};
+                                 "isnan",  "isfinite", "Dx", "Dy", "filterwidth", "trace",    "radiance", "visible", "require"};
 
 }  // namespace
 
@@ -170,6 +170,21 @@ Typed Lowering::intrinsic_texture_size(const std::vector<CallArgument>& argument
   return {};
 }
 
+// How much each component changes from pixel to pixel: along a row, along a column, and the larger
+// change in any direction.
+Typed Lowering::slopes(const std::string& name, Typed value) {
+  for (ir::Value& part : value.parts) {
+    const auto along = [&](std::int32_t axis) { return emit(ir::Op::slope, {part}, axis); };
+    if (name != "filterwidth") {
+      part = along(name == "Dx" ? 0 : 1);
+      continue;
+    }
+    const ir::Value x = along(0), y = along(1);
+    part = emit(ir::Op::fsqrt, {emit(ir::Op::fma, {x, x, emit(ir::Op::fmul, {y, y})})});
+  }
+  return value;
+}
+
 Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument>& arguments, const Span& span) {
   if (name == "texture") return intrinsic_texture(arguments, span);
   if (name == "volume") return intrinsic_volume(arguments, span);
@@ -242,6 +257,7 @@ Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument
     }
     return truth(result);
   }
+  if (name == "Dx" || name == "Dy" || name == "filterwidth") return slopes(name, value);
   if (name == "number") return value.kind == Kind::number ? value : refuse("a number or a truth value");
   if (name == "vector") return vector(value.parts);
   if (name == "transpose") {

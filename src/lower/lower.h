@@ -19,6 +19,7 @@ struct StreamName {
   std::string name;    // "point", "frame", "fg.color"
   int components = 1;  // 1: a number; n: a vector of n
   ir::Rate rate = ir::Rate::sample;
+  ir::InputSlopes slopes = ir::InputSlopes::none;
 };
 
 // A top-level capitalised name with a constant value.

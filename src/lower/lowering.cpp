@@ -174,9 +174,9 @@ const StreamName* Lowering::stream_name(const std::string& name) const {
   return nullptr;
 }
 
-std::int32_t Lowering::input_index(const std::string& name, ir::Rate rate) {
+std::int32_t Lowering::input_index(const std::string& name, ir::Rate rate, ir::InputSlopes slopes) {
   const auto [found, fresh] = inputs_.emplace(name, static_cast<std::int32_t>(module_.inputs.size()));
-  if (fresh) module_.inputs.push_back({name, rate});
+  if (fresh) module_.inputs.push_back({name, rate, slopes});
   return found->second;
 }
 
@@ -188,10 +188,10 @@ Typed Lowering::read_stream(const StreamName& name) {
   bool read = false;
   for (const std::string& known_name : reads_) read = read || known_name == name.name;
   if (!read) reads_.push_back(name.name);
-  if (name.components == 1) return number(emit(ir::Op::input, {}, input_index(name.name, name.rate)));
+  if (name.components == 1) return number(emit(ir::Op::input, {}, input_index(name.name, name.rate, name.slopes)));
   std::vector<ir::Value> parts;
   for (int c = 0; c < name.components; ++c)
-    parts.push_back(emit(ir::Op::input, {}, input_index(name.name + "." + std::to_string(c), name.rate)));
+    parts.push_back(emit(ir::Op::input, {}, input_index(name.name + "." + std::to_string(c), name.rate, name.slopes)));
   return vector(std::move(parts));
 }
 

@@ -67,7 +67,8 @@ class Lowering {
   const StreamName* stream_name(const std::string& name) const;
   Typed read_stream(const StreamName& name);
   Typed read_knob(std::size_t index);
-  std::int32_t input_index(const std::string& name, ir::Rate rate);
+  std::int32_t input_index(const std::string& name, ir::Rate rate,
+                           ir::InputSlopes slopes = ir::InputSlopes::none);
 
   // names.cpp
   Typed lower_name(const std::string& name, const Span& span);
@@ -125,6 +126,7 @@ class Lowering {
   Typed intrinsic_texture(std::vector<CallArgument>& arguments, const Span& span);
   Typed intrinsic_volume(std::vector<CallArgument>& arguments, const Span& span);
   Typed intrinsic_texture_size(const std::vector<CallArgument>& arguments);
+  Typed slopes(const std::string& name, Typed value);
   Typed intrinsic_fold(const std::string& name, std::vector<CallArgument>& arguments, const Span& span);
 
   // intrinsics_scene.cpp: rays into the scene.

@@ -16,6 +16,10 @@ namespace pse::passes {
 std::size_t outline(ir::Module& module, const std::vector<ir::CallRange>& calls,
                     const OutlineOptions& options = {});
 
+// slopes.cpp: the derivative takes the place of each `slope` instruction, for inputs "NAME$x" and
+// "NAME$y" are added. Before it the others do not know what such a value depends on.
+void resolve_slopes(ir::Module& module);
+
 // inline_calls.cpp: copies called functions into their callers.
 struct InlineOptions {
   std::size_t small = 40;           // functions up to this many instructions, always

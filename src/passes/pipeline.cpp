@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "passes/deriver.h"
 #include "passes/passes.h"
 
 namespace pse::passes {
@@ -16,13 +17,19 @@ SplitModule run_pipeline(ir::Module module, const PipelineOptions& options) {
     after(name, on);
   };
 
-  if (options.optimize) {
-    // What the program does not need, and what it calls.
+  // What the program does not need, and the slopes that it asks for.
+  if (options.optimize)
     run(
         "remove-dead", [](ir::Module& m) { remove_dead(m); }, module);
+  const bool has_slopes = asks_for_slopes(module.main().body);
+  if (has_slopes) run("slopes", resolve_slopes, module);
+
+  if (options.optimize) {
+    // What it calls. With slopes in between, the copies of a function are no longer alike.
     InlineOptions inlining;
+    const std::vector<ir::CallRange> calls = has_slopes ? std::vector<ir::CallRange>{} : options.calls;
     run(
-        "outline", [&](ir::Module& m) { inlining.first_kept = outline(m, options.calls, options.outline); }, module);
+        "outline", [&](ir::Module& m) { inlining.first_kept = outline(m, calls, options.outline); }, module);
     run(
         "inline", [&](ir::Module& m) { inline_calls(m, inlining); }, module);
     // Twice: selects made from ifs, and loops that fell away, show new constants.

@@ -117,6 +117,9 @@ class RateAssigner {
     for (const Value operand : in.operands) highest = std::max(highest, rate(operand));
     const auto imm = static_cast<std::size_t>(in.imm);
     if (in.op == Op::input) highest = module_.inputs[imm].rate;
+    // Until passes/slopes has put the derivative in its place: what goes by the pixel's width alone,
+    // such as how many octaves are summed, is no edge of the picture.
+    if (in.op == Op::slope) highest = std::min(highest, Rate::frame);
     // What the host brings may be another thing in another frame, and so may what is in memory.
     const bool asks = in.op == Op::external || (in.op == Op::call && asks_external_[imm]);
     if (asks || reads_array(in.op)) highest = std::max(highest, Rate::frame);

@@ -21,19 +21,27 @@ constexpr PlaneTransform no_transform = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 
 // Where no prepass has looked, matter may be anywhere along a ray.
 constexpr double anywhere_on_ray = 1e30;
 
+// A coordinate, or its slope from pixel to pixel ("x$x", "point.1$y").
+enum class Part { value, slope_x, slope_y };
+
 struct PlaneInput {
   std::size_t input;  // index in Module::inputs
   Coordinate coordinate;
+  Part part = Part::value;
 };
 
-std::vector<PlaneInput> find_plane_inputs(const ir::Module& module) {
+std::vector<PlaneInput> find_plane_inputs(const ir::Module& module, ir::Rate rate) {
   std::vector<PlaneInput> found;
   for (std::size_t i = 0; i < module.inputs.size(); ++i) {
-    if (module.inputs[i].rate != ir::Rate::sample) continue;
-    const auto name =
-        std::find(coordinate_names.begin(), coordinate_names.end(), module.inputs[i].name);
+    if (module.inputs[i].rate != rate) continue;
+    std::string_view full = module.inputs[i].name;
+    Part part = Part::value;
+    if (full.ends_with("$x")) part = Part::slope_x;
+    if (full.ends_with("$y")) part = Part::slope_y;
+    if (part != Part::value) full.remove_suffix(2);
+    const auto name = std::find(coordinate_names.begin(), coordinate_names.end(), full);
     if (name != coordinate_names.end())
-      found.push_back({i, static_cast<Coordinate>(name - coordinate_names.begin())});
+      found.push_back({i, static_cast<Coordinate>(name - coordinate_names.begin()), part});
   }
   return found;
 }
@@ -80,9 +88,17 @@ double coordinate_at(const ImagePlane& plane, Coordinate which, double px, doubl
   return place.z;
 }
 
-// The coordinate at the sample of pixel (column, row).
-double coordinate(const ImagePlane& plane, Coordinate which, int column, int row) {
-  return coordinate_at(plane, which, column + plane.sample_x, row + plane.sample_y);
+// What an input holds at a place in pixels of the whole picture.
+double input_at(const ImagePlane& plane, const PlaneInput& input, double px, double py) {
+  if (input.part == Part::value) return coordinate_at(plane, input.coordinate, px, py);
+  const double dx = input.part == Part::slope_x ? 0.5 : 0, dy = input.part == Part::slope_y ? 0.5 : 0;
+  return coordinate_at(plane, input.coordinate, px + dx, py + dy) -
+         coordinate_at(plane, input.coordinate, px - dx, py - dy);
+}
+
+// The same at the sample of pixel (column, row).
+double input_of(const ImagePlane& plane, const PlaneInput& input, int column, int row) {
+  return input_at(plane, input, column + plane.sample_x, row + plane.sample_y);
 }
 
 bool varies_along_row(Coordinate which) {
@@ -101,10 +117,10 @@ Axis make_axis(const ImagePlane& plane, const PlaneInput& input, const Rect& win
   Axis axis{input.input, varies_along_row(input.coordinate), {}};
   if (axis.along_row) {
     for (int column = window.x0; column < window.x1; ++column)
-      axis.values.push_back(static_cast<float>(coordinate(plane, input.coordinate, column, 0)));
+      axis.values.push_back(static_cast<float>(input_of(plane, input, column, 0)));
   } else {
     for (int row = window.y0; row < window.y1; ++row)
-      axis.values.push_back(static_cast<float>(coordinate(plane, input.coordinate, 0, row)));
+      axis.values.push_back(static_cast<float>(input_of(plane, input, 0, row)));
   }
   return axis;
 }
@@ -123,7 +139,7 @@ void fill_everywhere(const ImagePlane& plane, const PlaneInput& input, const Til
   float* out = tile.planes[input.input];
   for (int row = tile.rect.y0; row < tile.rect.y1; ++row)
     for (int column = tile.rect.x0; column < tile.rect.x1; ++column)
-      *out++ = static_cast<float>(coordinate(plane, input.coordinate, column, row));
+      *out++ = static_cast<float>(input_of(plane, input, column, row));
 }
 
 bool is_transformed(Coordinate which) {
@@ -135,7 +151,7 @@ bool is_transformed(Coordinate which) {
 class PlaneSamples : public SampleSource {
  public:
   PlaneSamples(const ir::Module& module, const ImagePlane& plane)
-      : plane_(plane), inputs_(find_plane_inputs(module)) {}
+      : plane_(plane), inputs_(find_plane_inputs(module, ir::Rate::sample)) {}
 
   void fill(std::span<const double> x, std::span<const double> y,
             std::span<float* const> planes) const override {
@@ -147,7 +163,7 @@ class PlaneSamples : public SampleSource {
       };
       // The usual ones in loops of their own.
       const double w = plane_.width, h = plane_.height;
-      switch (plane_.transform ? Coordinate::point_z : input.coordinate) {
+      switch (plane_.transform || input.part != Part::value ? Coordinate::point_z : input.coordinate) {
         case Coordinate::u:
           each([&](std::size_t i) { return x[i] / w; });
           break;
@@ -163,7 +179,7 @@ class PlaneSamples : public SampleSource {
           each([&](std::size_t i) { return (h - 2 * y[i]) / h; });
           break;
         default:
-          each([&](std::size_t i) { return coordinate_at(plane_, input.coordinate, x[i], y[i]); });
+          each([&](std::size_t i) { return input_at(plane_, input, x[i], y[i]); });
       }
     }
   }
@@ -192,18 +208,20 @@ std::optional<PlaneTransform> plane_transform(const std::vector<double>& n) {
   return m;
 }
 
-const std::vector<StreamName>& image_plane_names() {
+std::vector<StreamName> image_plane_names(const std::optional<PlaneTransform>& transform) {
   using enum ir::Rate;
-  static const std::vector<StreamName> names = {
-      {"x", 1, sample},     {"y", 1, sample},         {"u", 1, sample},
-      {"v", 1, sample},     {"point", 3, sample},     {"px", 1, sample},
-      {"py", 1, sample},    {"frame", 1, frame},      {"time", 1, frame},
+  const bool projective = transform && ((*transform)[12] != 0 || (*transform)[13] != 0);
+  const auto even = ir::InputSlopes::of_frame;
+  const auto seen = projective ? ir::InputSlopes::of_sample : even;
+  return {
+      {"x", 1, sample, seen}, {"y", 1, sample, seen},     {"u", 1, sample, even},
+      {"v", 1, sample, even}, {"point", 3, sample, seen}, {"px", 1, sample, even},
+      {"py", 1, sample, even}, {"frame", 1, frame},      {"time", 1, frame},
       {"fps", 1, frame},    {"width", 1, frame},      {"height", 1, frame},
       {"aspect", 1, frame}, {"pixelsize", 1, frame},  {"pixel_freq", 1, frame},
       {"seed", 1, frame},   {"begin_frame", 1, frame},
       {"prepass.near", 1, sample}, {"prepass.far", 1, sample}, {"prepass.step", 1, frame},
       {"xform", 16, frame}};
-  return names;
 }
 
 void set_plane_uniforms(const ir::Module& module, const ImagePlane& plane, FrameState& state) {
@@ -231,6 +249,10 @@ void set_plane_uniforms(const ir::Module& module, const ImagePlane& plane, Frame
     for (std::size_t i = 0; i < module.inputs.size(); ++i)
       if (module.inputs[i].name == "xform." + std::to_string(k))
         state.uniforms[i] = static_cast<float>(xform[k]);
+  // Slopes that are the same everywhere.
+  for (const PlaneInput& input : find_plane_inputs(module, ir::Rate::frame))
+    if (input.part != Part::value)
+      state.uniforms[input.input] = static_cast<float>(input_at(plane, input, 0.5, 0.5));
 }
 
 TileSource image_plane_source(const ir::Module& module, const ImagePlane& plane,
@@ -241,8 +263,8 @@ TileSource image_plane_source(const ir::Module& module, const ImagePlane& plane,
     std::vector<PlaneInput> others;
   };
   auto tables = std::make_shared<Tables>();
-  for (const PlaneInput& input : find_plane_inputs(module)) {
-    if (plane.transform && is_transformed(input.coordinate))
+  for (const PlaneInput& input : find_plane_inputs(module, ir::Rate::sample)) {
+    if (input.part != Part::value || (plane.transform && is_transformed(input.coordinate)))
       tables->others.push_back(input);
     else
       tables->axes.push_back(make_axis(plane, input, window));

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace pse {
@@ -26,6 +27,9 @@ class SampleSource {
   // False for stored pixels (input images, another renderer's buffers): they are known at pixel
   // centres only, and fill() answers with the pixel that the place lies in.
   virtual bool anywhere() const = 0;
+
+  // Whether fill() brings this input, the slope per pixel ("NAME$x", "NAME$y") of another one.
+  virtual bool brings_slope(const std::string&) const { return false; }
 };
 
 // How an input of sample rate changes from pixel to pixel.

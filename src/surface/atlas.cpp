@@ -182,7 +182,8 @@ std::expected<Atlas, std::string> make_atlas(const Mesh& mesh, const AtlasSize& 
 
 std::vector<StreamName> atlas_names() {
   using enum ir::Rate;
-  return {{"point", 3, sample},       {"place", 3, sample},     {"normal", 3, sample},
+  constexpr auto sloping = ir::InputSlopes::of_sample;
+  return {{"point", 3, sample, sloping}, {"place", 3, sample, sloping}, {"normal", 3, sample},
           {"flat_normal", 3, sample}, {"view", 3, sample},      {"uv", 2, sample},
           {"u", 1, sample},           {"v", 1, sample},         {"id", 1, sample},
           {"hit", 1, sample},         {"backface", 1, sample},  {"px", 1, sample},
@@ -200,7 +201,8 @@ TileSource atlas_source(const ir::Module& module, const Mesh& mesh, const Atlas&
     const std::string& name = module.inputs[i].name;
     if (module.inputs[i].rate != ir::Rate::sample) continue;
     const std::size_t dot = name.find('.');
-    wanted.push_back({i, name.substr(0, dot), dot == std::string::npos ? 0 : name[dot + 1] - '0'});
+    const std::size_t slope = std::min(name.find('$'), name.size());
+    wanted.push_back({i, name.substr(0, dot) + name.substr(slope), dot == std::string::npos ? 0 : name[dot + 1] - '0'});
   }
   const auto value = [&mesh, &atlas](const AtlasSample& s, const std::string& name) -> Vec3 {
     const auto v = corners(mesh, s.triangle);
@@ -218,6 +220,14 @@ TileSource atlas_source(const ir::Module& module, const Mesh& mesh, const Atlas&
     if (name == "uv" || name == "u" || name == "v") {
       const Vec3 uv{a * t0.x + b * t1.x + c * t2.x, a * t0.y + b * t1.y + c * t2.y, 0};
       return name == "v" ? Vec3{uv.y, 0, 0} : uv;
+    }
+    if (name.starts_with("point$") || name.starts_with("place$")) {
+      // Along one texel to the right, or one down.
+      const Point s1{t1.x - t0.x, t1.y - t0.y}, s2{t2.x - t0.x, t2.y - t0.y};
+      const double area = s1.x * s2.y - s1.y * s2.x;
+      if (name.back() == 'x')
+        return 1 / (area * atlas.size.width) * (s2.y * (p1 - p0) - s1.y * (p2 - p0));
+      return -1 / (area * atlas.size.height) * (s1.x * (p2 - p0) - s2.x * (p1 - p0));
     }
     if (name == "id" || name == "hit") return {1, 0, 0};
     const auto columns = static_cast<std::uint32_t>(atlas.columns());

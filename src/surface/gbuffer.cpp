@@ -62,6 +62,9 @@ std::string number(double value) {
 }
 std::string numbers(const Vec3& v) { return number(v.x) + " " + number(v.y) + " " + number(v.z); }
 
+// Which layer holds the slopes of `point` that an input ("point.0$x") is one of.
+const char* slope_layer(const std::string& input) { return input.back() == 'x' ? "dPdx" : "dPdy"; }
+
 }  // namespace
 
 SurfaceLayers surface_layers(std::span<const image::Layer> layers) {
@@ -117,7 +120,8 @@ std::vector<StreamName> gbuffer_names(const SurfaceLayers& layers,
   std::vector<StreamName> names;
   for (const Known& known : known_layers())
     if (layers.contains(known.name))
-      names.push_back({known.name, static_cast<int>(known.components), sample});
+      names.push_back({known.name, static_cast<int>(known.components), sample,
+                       ir::InputSlopes::of_sample});
   const auto add = [&](const char* name, int components) {
     if (!layers.contains(name)) names.push_back({name, components, sample});
   };
@@ -151,6 +155,10 @@ std::vector<std::string> layers_wanted(const ir::Module& module, const SurfaceLa
     if (input.rate != ir::Rate::sample) continue;
     const std::string base = input.name.substr(0, input.name.find('.'));
     if (base == "u" || base == "v") want("uv");
+    if (const std::size_t slope = input.name.find('$'); slope != std::string::npos) {
+      if (base == "point" && want(slope_layer(input.name))) continue;
+      want("id");
+    }
     if (want(base)) continue;
     if (base == "view") (void)(want("direction") || want("place"));
     if (base == "direction" || base == "depth") want("place");
@@ -185,11 +193,21 @@ GBuffer::GBuffer(const ir::Module& module, const SurfaceLayers& layers,
   using enum What;
   for (std::size_t i = 0; i < module.inputs.size(); ++i) {
     if (module.inputs[i].rate != ir::Rate::sample) continue;
-    const std::string& full = module.inputs[i].name;
+    const std::size_t dollar = module.inputs[i].name.find('$');
+    const std::string full = module.inputs[i].name.substr(0, dollar);
     const std::size_t dot = full.find('.');
     const std::string base = full.substr(0, dot);
     const std::size_t c = dot == std::string::npos ? 0 : std::size_t(full[dot + 1] - '0');
     Wanted wanted{i, layer, c, 0, nullptr};
+    if (dollar != std::string::npos) {
+      wanted.what = module.inputs[i].name.back() == 'x' ? slope_x : slope_y;
+      wanted.plane = plane_of(base, c);
+      if (const float* stored = plane_of(slope_layer(module.inputs[i].name), c);
+          base == "point" && stored != nullptr)
+        wanted.what = layer, wanted.plane = stored;
+      if (wanted.plane != nullptr) wanted_.push_back(wanted);
+      continue;
+    }
     if (base == "u" || base == "v")
       wanted.plane = plane_of("uv", base == "u" ? 0 : 1);
     else if (base == "id")
@@ -272,6 +290,22 @@ double GBuffer::pixelsize_at(std::size_t pixel) const {
   return std::sqrt(length(cross(across, down)));
 }
 
+// Between the neighbours along an axis that show the same object; with none there is no slope.
+float GBuffer::slope_at(const float* plane, bool along_x, std::size_t pixel) const {
+  const auto width = static_cast<std::size_t>(data_.width());
+  const auto all = static_cast<std::size_t>(data_.pixels());
+  const std::size_t stride = along_x ? 1 : width;
+  const auto same = [&](bool is_there, std::size_t other) {
+    return is_there && seen_at(other) && (id_ == nullptr || id_[other] == id_[pixel]);
+  };
+  const bool before = along_x ? pixel % width > 0 : pixel >= width;
+  const bool after = along_x ? pixel % width + 1 < width : pixel + width < all;
+  const bool has_before = same(before, pixel - stride), has_after = same(after, pixel + stride);
+  const float low = has_before ? plane[pixel - stride] : plane[pixel];
+  const float high = has_after ? plane[pixel + stride] : plane[pixel];
+  return (high - low) * (has_before && has_after ? 0.5f : 1.0f);
+}
+
 float GBuffer::value(const Wanted& wanted, std::size_t pixel) const {
   const auto part = [&](const Vec3& v) {
     return static_cast<float>(v[static_cast<int>(wanted.component)]);
@@ -280,6 +314,8 @@ float GBuffer::value(const Wanted& wanted, std::size_t pixel) const {
   switch (wanted.what) {
     case What::layer: return wanted.plane[pixel];
     case What::negated: return -wanted.plane[pixel];
+    case What::slope_x: return slope_at(wanted.plane, true, pixel);
+    case What::slope_y: return slope_at(wanted.plane, false, pixel);
     case What::id: {
       const bool seen = seen_at(pixel);
       return !seen ? 0 : id_ != nullptr && id_[pixel] >= 1 ? id_[pixel] : 1;

@@ -51,7 +51,7 @@ class GBuffer : public SampleSource {
 
  private:
   enum class What {
-    layer, negated, id, hit, depth, direction, view, pixelsize, pixel_freq, nothing,
+    layer, negated, slope_x, slope_y, id, hit, depth, direction, view, pixelsize, pixel_freq, nothing,
     light_direction, light_color, light_position, light_radius
   };
   struct Wanted {
@@ -68,6 +68,7 @@ class GBuffer : public SampleSource {
   Vec3 direction_at(std::size_t pixel) const;
   bool seen_at(std::size_t pixel) const;
   double pixelsize_at(std::size_t pixel) const;
+  float slope_at(const float* plane, bool along_x, std::size_t pixel) const;
   bool is_same_everywhere(const Wanted& wanted) const;
   float value(const Wanted& wanted, std::size_t pixel) const;
 

@@ -26,7 +26,9 @@ std::string light_name(std::size_t light, const char* what) {
 std::vector<StreamName> surface_names(std::size_t lights) {
   using enum ir::Rate;
   std::vector<StreamName> names = {
-      {"point", 3, sample},      {"place", 3, sample},     {"normal", 3, sample},
+      {"point", 3, sample, ir::InputSlopes::of_sample},
+      {"place", 3, sample, ir::InputSlopes::of_sample},
+      {"normal", 3, sample},
       {"flat_normal", 3, sample}, {"uv", 2, sample},       {"u", 1, sample},
       {"v", 1, sample},          {"id", 1, sample},        {"depth", 1, sample},
       {"hit", 1, sample},        {"backface", 1, sample},  {"view", 3, sample},
@@ -48,6 +50,12 @@ std::optional<NameWriter::Wanted> NameWriter::find(const std::string& name, std:
   const std::size_t dot = name.find('.');
   const std::string base = name.substr(0, dot);
   const int component = dot == std::string::npos ? 0 : name[dot + 1] - '0';
+  if (name.size() > dot + 2 && name[dot + 2] == '$') {
+    const bool along_x = name.back() == 'x';
+    if (base == "point") return Wanted{0, along_x ? dpdx : dpdy, component, 0};
+    if (base == "place") return Wanted{0, along_x ? place_dx : place_dy, component, 0};
+    return {};
+  }
   constexpr std::array<std::pair<std::string_view, What>, 19> plain = {
       {{"point", point},         {"place", place},       {"normal", normal},
        {"flat_normal", flat_normal}, {"uv", uv},         {"id", id},
@@ -88,14 +96,18 @@ NameWriter::NameWriter(const ir::Module& module, std::shared_ptr<const Scene> sc
   }
 }
 
-// How the point on the surface moves, in the object's frame, when the place in the picture moves by
-// one pixel along `axis`: the step across the ray, carried along the ray onto the tangent plane.
-Vec3 NameWriter::shift(const Shown& s, const Vec3& axis) const {
+// How the place on the surface moves when the place in the picture moves by one pixel along `axis`:
+// the step across the ray, carried along the ray onto the tangent plane.
+Vec3 NameWriter::world_shift(const Shown& s, const Vec3& axis) {
   const Vec3& d = s.sighting->ray->direction;
-  Vec3 step = s.sighting->width * normalized(axis - dot(axis, d) * d);
-  const double facing = std::min(dot(s.spot->flat, d), -0.05);
-  step = step - (dot(s.spot->flat, step) / facing) * d;
-  return scene_->to_object(static_cast<std::size_t>(s.object)).vector(step);
+  const Vec3 step = s.sighting->width * normalized(axis - dot(axis, d) * d);
+  const double facing = std::min(dot(s.spot->flat, d), -0.001);
+  return step - (dot(s.spot->flat, step) / facing) * d;
+}
+
+// The same in the object's frame.
+Vec3 NameWriter::shift(const Shown& s, const Vec3& axis) const {
+  return scene_->to_object(static_cast<std::size_t>(s.object)).vector(world_shift(s, axis));
 }
 
 template <class Put>
@@ -145,6 +157,10 @@ void NameWriter::each(const Wanted& wanted, std::span<const Shown> shown, const 
       return one([&](const Shown& s) { return 0.5 / static_cast<float>(size(s)); });
     case What::dpdx: return all([](const Shown& s) { return s.dx; });
     case What::dpdy: return all([](const Shown& s) { return -s.dy; });
+    case What::place_dx:
+      return all([&](const Shown& s) { return s.object < 0 ? Vec3{} : world_shift(s, right_); });
+    case What::place_dy:
+      return all([&](const Shown& s) { return s.object < 0 ? Vec3{} : -world_shift(s, up_); });
     case What::axis_x: return axes(0);
     case What::axis_y: return axes(1);
     case What::axis_z: return axes(2);

@@ -29,6 +29,11 @@ class NameWriter {
  public:
   NameWriter(const ir::Module& module, std::shared_ptr<const Scene> scene, const Lens& lens);
 
+  // Whether an input is a slope of a name: "point.0$x" and its like.
+  static bool is_slope(const std::string& input) {
+    return input.find('$') != std::string::npos && find(input, 0).has_value();
+  }
+
   // planes[i] receives module input i, for those that are names of surfaces; null: not wanted.
   // hits[k] is what sighting k met. Without `misses`, samples that show nothing get their `id` only.
   void write(std::span<const Sighting> sightings, std::span<const Hit> hits,
@@ -44,7 +49,7 @@ class NameWriter {
   };
   enum class What {
     point, place, normal, flat_normal, uv, id, depth, hit, backface, view, origin, direction,
-    pixelsize, pixel_freq, dpdx, dpdy, axis_x, axis_y, axis_z,
+    pixelsize, pixel_freq, dpdx, dpdy, place_dx, place_dy, axis_x, axis_y, axis_z,
     light_direction, light_color, light_position, light_radius
   };
   struct Wanted {
@@ -57,6 +62,7 @@ class NameWriter {
   // Calls put(shown, value) with the value of a name at each sample.
   template <class Put>
   void each(const Wanted& wanted, std::span<const Shown> shown, const Put& put) const;
+  static Vec3 world_shift(const Shown& s, const Vec3& axis);
   Vec3 shift(const Shown& s, const Vec3& axis) const;
 
   std::shared_ptr<const Scene> scene_;
@@ -77,6 +83,9 @@ class SurfaceSource : public SampleSource {
   void fill(std::span<const double> x, std::span<const double> y,
             std::span<float* const> planes) const override;
   bool anywhere() const override { return true; }
+  bool brings_slope(const std::string& input) const override {
+    return NameWriter::is_slope(input);
+  }
 
  private:
   void fill_some(std::span<const double> x, std::span<const double> y,

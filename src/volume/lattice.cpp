@@ -68,8 +68,9 @@ std::array<double, 3> Lattice::point(const std::array<int, 3>& voxel) const {
 
 const std::vector<StreamName>& lattice_names() {
   using enum ir::Rate;
+  constexpr auto even = ir::InputSlopes::of_frame;
   static const std::vector<StreamName> names = {
-      {"point", 3, sample},    {"x", 1, sample},         {"y", 1, sample},     {"z", 1, sample},
+      {"point", 3, sample, even}, {"x", 1, sample, even}, {"y", 1, sample, even}, {"z", 1, sample},
       {"u", 1, sample},        {"v", 1, sample},         {"w", 1, sample},     {"px", 1, sample},
       {"py", 1, sample},       {"pz", 1, sample},        {"frame", 1, frame},  {"time", 1, frame},
       {"fps", 1, frame},       {"width", 1, frame},      {"height", 1, frame}, {"depth", 1, frame},
@@ -86,8 +87,13 @@ void set_lattice_uniforms(const ir::Module& module, const Lattice& lattice,
   };
   const double voxel =
       std::max({lattice.voxel()[0], lattice.voxel()[1], lattice.voxel()[2]});
-  const std::array<std::pair<std::string_view, double>, 11> values = {
-      {{"frame", frame.frame},
+  // Of the three directions from voxel to voxel the first two stand for those of a picture.
+  const std::array<std::pair<std::string_view, double>, 15> values = {
+      {{"point.0$x", lattice.voxel()[static_cast<std::size_t>(lattice.file_axis(0))]},
+       {"point.1$y", lattice.voxel()[static_cast<std::size_t>(lattice.file_axis(1))]},
+       {"x$x", lattice.voxel()[static_cast<std::size_t>(lattice.file_axis(0))]},
+       {"y$y", lattice.voxel()[static_cast<std::size_t>(lattice.file_axis(1))]},
+       {"frame", frame.frame},
        {"time", frame.frame / frame.fps},
        {"fps", frame.fps},
        {"width", along(0)},

@@ -142,6 +142,8 @@ llvm::Value* FunctionEmitter::emit_value(const ir::Instruction& in) {
   switch (in.op) {
     case Op::const_f32:
       return llvm::ConstantFP::get(context_, llvm::APFloat(in.imm_f32()));
+    case Op::slope:
+      return llvm::ConstantFP::get(context_, llvm::APFloat(0.0f));
     case Op::const_i32:
       return b_.getInt32(static_cast<std::uint32_t>(in.imm));
     case Op::const_bool:

@@ -8,7 +8,7 @@
 
 #include "ir/module.h"
 
-namespace pse::antialias {
+namespace pse::passes {
 
 // Floats only: integers and truth values are steps, which have no slope.
 struct Active {
@@ -19,9 +19,11 @@ struct Active {
 
 class Activity {
  public:
-  explicit Activity(const ir::Module& module) : module_(module) {}
+  // `inputs`: which of the module's are active.
+  Activity(const ir::Module& module, std::vector<bool> inputs)
+      : module_(module), inputs_(std::move(inputs)) {}
 
-  // For these parameters being active; sample-rate inputs always are. The answer stays where it is.
+  // For these parameters being active. The answer stays where it is.
   const Active& of(std::uint32_t function, const std::vector<bool>& parameters);
 
  private:
@@ -29,7 +31,8 @@ class Activity {
   bool visit(const ir::Function& function, const ir::Instruction& in, Active& active);
 
   const ir::Module& module_;
+  std::vector<bool> inputs_;
   std::map<std::pair<std::uint32_t, std::vector<bool>>, Active> known_;
 };
 
-}  // namespace pse::antialias
+}  // namespace pse::passes

@@ -8,7 +8,7 @@
 
 #include "ir/module.h"
 
-namespace pse::antialias {
+namespace pse::passes {
 
 class Emit {
  public:
@@ -54,4 +54,4 @@ class Emit {
   std::vector<ir::Instruction>* out_;
 };
 
-}  // namespace pse::antialias
+}  // namespace pse::passes

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "antialias/emit.h"
+#include "passes/emit.h"
 
-namespace pse::antialias {
+namespace pse::passes {
 
 // The derivative of an operator's result along one direction, given those of its operands
 // (no_value: 0). `in` must have an active operand and be no call, load or conditional.
@@ -24,4 +24,4 @@ std::optional<std::vector<ir::Value>> partials_of(const Emit& emit, const std::s
                                                   const ir::Instruction& call,
                                                   const std::vector<bool>& wanted);
 
-}  // namespace pse::antialias
+}  // namespace pse::passes

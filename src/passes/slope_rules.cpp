@@ -1,13 +1,13 @@
 // Rules of the calculus, one by one. Where a slope is infinite it comes out as infinity or NaN, and
 // edges that depend on it are found by more samples.
-#include "antialias/rules.h"
+#include "passes/slope_rules.h"
 
 #include <algorithm>
 #include <array>
 #include <numbers>
 #include <string_view>
 
-namespace pse::antialias {
+namespace pse::passes {
 
 using ir::Instruction;
 using ir::no_value;
@@ -137,4 +137,4 @@ std::optional<std::vector<Value>> partials_of(const Emit& e, const std::string& 
   return std::nullopt;
 }
 
-}  // namespace pse::antialias
+}  // namespace pse::passes

@@ -1,10 +1,10 @@
 // From definitions to uses until nothing changes; loops need a round for each value that their
 // turns hand on.
-#include "antialias/activity.h"
+#include "passes/activity.h"
 
-#include "antialias/rules.h"
+#include "passes/slope_rules.h"
 
-namespace pse::antialias {
+namespace pse::passes {
 
 using ir::Function;
 using ir::Instruction;
@@ -45,7 +45,8 @@ bool Activity::visit(const Function& function, const Instruction& in, Active& ac
   const auto array = static_cast<std::size_t>(in.imm);
   switch (in.op) {
     case Op::input:
-      mark(in.result(), module_.inputs[static_cast<std::size_t>(in.imm)].rate == ir::Rate::sample);
+      mark(in.result(), static_cast<std::size_t>(in.imm) < inputs_.size() &&
+                            inputs_[static_cast<std::size_t>(in.imm)]);
       break;
     case Op::if_:
       for (std::size_t i = 0; i < in.results.size(); ++i)
@@ -85,6 +86,8 @@ bool Activity::visit(const Function& function, const Instruction& in, Active& ac
     case Op::ftrunc:
     case Op::fround:
       break;  // flat between their steps
+    case Op::slope:
+      break;  // nobody asks for the slopes of slopes
     default:
       for (const Value operand : in.operands)
         for (const Value result : in.results) mark(result, active.values[operand]);
@@ -93,4 +96,4 @@ bool Activity::visit(const Function& function, const Instruction& in, Active& ac
   return changed;
 }
 
-}  // namespace pse::antialias
+}  // namespace pse::passes

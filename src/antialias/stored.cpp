@@ -91,7 +91,7 @@ StoredRefiner::Values StoredRefiner::run(std::span<float* const> inputs, const S
 
 Refined StoredRefiner::refine(const Tile& tile, std::span<float* const> inputs, RunStatus& status,
                               Counts& counts) const {
-  Refined refined(find_edge_pixels(tile, options_.filter.reach() > 1.01f ? 2 : 1),
+  Refined refined(find_edge_pixels(tile, options_.filter),
                   output_of_.size());
   const std::vector<Pixel>& pixels = refined.pixels;
   counts.filtered += static_cast<std::int64_t>(pixels.size());

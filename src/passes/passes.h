@@ -16,6 +16,11 @@ namespace pse::passes {
 std::size_t outline(ir::Module& module, const std::vector<ir::CallRange>& calls,
                     const OutlineOptions& options = {});
 
+// Whether the program asks for slopes once branches that constants decide are gone.
+bool asks_when_folded(ir::Module module);
+// Puts 0 in the place of each `slope`, and changes nothing else.
+void forget_slopes(ir::Module& module);
+
 // slopes.cpp: the derivative takes the place of each `slope` instruction, for inputs "NAME$x" and
 // "NAME$y" are added. Before it the others do not know what such a value depends on.
 void resolve_slopes(ir::Module& module);

@@ -21,7 +21,12 @@ SplitModule run_pipeline(ir::Module module, const PipelineOptions& options) {
   if (options.optimize)
     run(
         "remove-dead", [](ir::Module& m) { remove_dead(m); }, module);
-  const bool has_slopes = asks_for_slopes(module.main().body);
+  bool has_slopes = asks_for_slopes(module.main().body);
+  if (has_slopes && options.optimize && !asks_when_folded(module)) {
+    // Only in branches that are never taken: what stands there does not matter.
+    forget_slopes(module);
+    has_slopes = false;
+  }
   if (has_slopes) run("slopes", resolve_slopes, module);
 
   if (options.optimize) {

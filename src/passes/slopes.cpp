@@ -13,7 +13,25 @@ void need_asked(const ir::Region& region, Slice& slice) {
   }
 }
 
+void forget(ir::Region& region) {
+  for (ir::Instruction& in : region.body) {
+    if (in.op == ir::Op::slope)
+      in = {.op = ir::Op::const_f32, .results = in.results, .imm = 0, .span = in.span};
+    for (ir::Region& inner : in.regions) forget(inner);
+  }
+}
+
 }  // namespace
+
+bool asks_when_folded(ir::Module module) {
+  fold(module);
+  decide(module);
+  fold(module);
+  remove_dead(module);
+  return asks_for_slopes(module.main().body);
+}
+
+void forget_slopes(ir::Module& module) { forget(module.main().body); }
 
 void resolve_slopes(ir::Module& module) {
   if (!asks_for_slopes(module.main().body)) return;

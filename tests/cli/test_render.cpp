@@ -407,7 +407,7 @@ TEST_F(Render, TexturesAreFoundBesideTheProgramAndOnThePath) {
   file("a.pse", "color = texture(\"wood.exr\", u, v, filter=\"nearest\")\n");
   const std::vector<std::string> words = {"render", "a.pse", "-o",     "a.exr",
                                           "--res",  "4x2",   "--float"};
-  EXPECT_EQ(pse(words).status, 3);
+  EXPECT_EQ(pse(words).status, 4);
   environment["PSE_PATH"] = "assets";
   const Ended ended = pse(words);
   ASSERT_EQ(ended.status, 0) << ended.err;

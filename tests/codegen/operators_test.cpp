@@ -269,6 +269,7 @@ TEST_P(Operator, GivesTheTablesBitsForUniformValues) {
 TEST(Operators, EveryOneOfTheTableIsTested) {
   for (const ir::OpInfo& info : ir::op_table()) {
     if (info.op <= Op::input || info.op >= Op::table_f32 || info.op == Op::select) continue;
+    if (info.op == Op::slope) continue;  // gone before there is a kernel
     EXPECT_FALSE(cases_of(info.op).empty()) << info.name;
   }
 }

@@ -96,8 +96,7 @@ TEST(Foreign, AReaderThatBreaksDownIsSaid) {
     Content file = {0x01, 0xda, 1, 1, 0, 2, 0, 4, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 255};
     file.resize(512);
     const auto size = static_cast<unsigned char>(runs.size());
-    for (const Content& table : {Content{0, 0, 2, 16}, Content{0, 0, 2, 16},
-                                 Content{0, 0, 0, size}, Content{0, 0, 0, size}})
+    for (const Content& table : {Content{0, 0, 2, 8}, Content{0, 0, 0, size}})
       file.insert(file.end(), table.begin(), table.end());
     file.insert(file.end(), runs.begin(), runs.end());
     return file;

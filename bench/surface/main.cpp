@@ -197,8 +197,11 @@ void bench_vase(int runs) {
                               .data = {0, 0, size, size},
                               .channels = {{"A"}, {"point.X"}, {"point.Y"}, {"point.Z"}, {"N.X"},
                                            {"N.Y"}, {"N.Z"}, {"direction.X"}, {"direction.Y"},
-                                           {"direction.Z"}, {"pixelsize.Y"}}};
-  Job writer("a = hit\np = point\nn = normal\nd = direction\nw = pixelsize\n", surface_names(1));
+                                           {"direction.Z"}, {"pixelsize.Y"}, {"dPdx.X"}, {"dPdx.Y"},
+                                           {"dPdx.Z"}, {"dPdy.X"}, {"dPdy.Y"}, {"dPdy.Z"}}};
+  Job writer("a = hit\np = point\nn = normal\nd = direction\nw = pixelsize\n"
+             "dx = dPdx\ndy = dPdy\n",
+             surface_names(1));
   writer.shader->begin_frame({writer.state()}, scene, lens);
   writer.run(std::make_shared<SurfaceSource>(writer.whole->module(), scene, lens, false), 2);
   auto picture = std::make_shared<image::Image>(spec);

@@ -147,6 +147,22 @@ float Filter::moment(float distance, float nx, float ny) const {
   return of_unit() * scale_;
 }
 
+float Filter::edge_moment(float distance, float nx, float ny) const {
+  if (kind_ != FilterKind::box) return moment(distance, nx, ny);
+  // The edge's points -d n + t (-ny, nx) in the square of side 1: t from `low` to `high`.
+  const float d = distance / scale_;
+  float low = -1, high = 1;
+  const auto clip = [&](float start, float slope) {
+    if (std::abs(slope) < 1e-6f) return;
+    const float a = (-0.5f - start) / slope, b = (0.5f - start) / slope;
+    low = std::max(low, std::min(a, b)), high = std::min(high, std::max(a, b));
+  };
+  clip(-d * nx, -ny);
+  clip(-d * ny, nx);
+  if (!(low < high)) return 0;
+  return (high * high * high - low * low * low) / 3 * scale_;
+}
+
 std::array<float, 2> Filter::place(float u, float v) const {
   if (kind_ == FilterKind::box) return {(u - 0.5f) * scale_, (v - 0.5f) * scale_};
   const auto [signed_distance, angle] = disc_place(u, v);

@@ -36,9 +36,13 @@ class Filter {
   float share(float d, float nx, float ny) const;
 
   // The first moment of that side along the normal: its centroid is moment / share away from the
-  // centre. For kernels symmetric about their centre it is also the second moment of the chord
-  // along the edge, so that an edge of curvature k gains or loses k / 2 * moment.
+  // centre.
   float moment(float d, float nx, float ny) const;
+
+  // The second moment of the edge itself under the kernel, along the edge from where the centre is
+  // nearest: an edge of curvature k gains or loses k / 2 times this. For kernels that are symmetric
+  // about their centre it is the same number as moment().
+  float edge_moment(float d, float nx, float ny) const;
 
   // An offset from the centre for a point of the unit square, such that all have equal weight.
   std::array<float, 2> place(float u, float v) const;

@@ -35,6 +35,8 @@ constexpr float farthest_explained = 1.7f;
 constexpr float along = 0.7f, beyond = 0.1f;
 // Edges that turn by more than this from one to the other look are not followed.
 constexpr float most_turn = 0.5f;
+// A pixel's middle is on an edge as near as this.
+constexpr float on_edge = 0.01f;
 // A share so near to 0 or 1 leaves the pixel as it is.
 constexpr float least_share = 0.001f;
 
@@ -120,7 +122,8 @@ void Refiner::follow(std::vector<Crossing>& crossings, std::vector<Unclear>& unc
     const float moment = options_.filter.moment(c.distance, c.nx, c.ny);
     const float straight = options_.filter.share(c.distance, c.nx, c.ny);
     // The parabola -bend y^2 / 2 for the line, to second order.
-    c.share = straight + c.bend / 2 * moment * (1 - 0.75f * c.bend * c.distance);
+    const float turning = options_.filter.edge_moment(c.distance, c.nx, c.ny);
+    c.share = straight + c.bend / 2 * turning * (1 - 0.75f * c.bend * c.distance);
     if (!(c.share > least_share && c.share < 1 - least_share)) continue;
     c.towards = moment / straight, c.away = -moment / (1 - straight);
     crossings[kept++] = c;
@@ -142,9 +145,11 @@ void Refiner::blend(const Tile& tile, const std::vector<Crossing>& crossings, Re
   for (std::size_t i = 0; i < crossings.size(); ++i) {
     const Crossing& c = crossings[i];
     const std::size_t here = tile.at(c.pixel.x, c.pixel.y), a = 2 * i, b = a + 1;
-    const std::size_t own = c.distance < 0 ? b : a;
+    std::size_t own = c.distance < 0 ? b : a;
     // The sides must be two ways through the program, the pixel's own one of them.
     const float* path = sides[outputs_];
+    // On which side a pixel lies whose middle is on the edge, rounding decides.
+    if (std::abs(c.distance) < on_edge && path[own] != tile.path()[here]) own = own == a ? b : a;
     const bool one_way = path[a] == path[b], strange = path[own] != tile.path()[here];
     bool doubt = false;
     for (std::size_t o = 0; o < outputs_ && !doubt; ++o)

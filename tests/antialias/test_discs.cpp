@@ -89,8 +89,10 @@ TEST(Discs, TheExactResponses) {
 // Within 1/255 wherever the disc lies between the pixels. The other radii of every_radius have a
 // place where they are not: docs/decisions/2026-11-28-fading-and-stored-pixels.md.
 TEST(Discs, OfRadiiThatHold) {
-  for (const double radius : {1.8, 2.3, 2.6, 3.7, 5.2})
+  for (const double radius : {1.8, 2.0, 2.3, 2.6, 3.7, 5.2, 7.0, 11.3})
     EXPECT_LT(worst_error(FilterKind::cubic, radius), one_step) << radius;
+  for (const double radius : {5.2, 7.0, 11.3})
+    EXPECT_LT(worst_error(FilterKind::box, radius), one_step) << radius;
 }
 
 // Run by hand (--gtest_also_run_disabled_tests): prints the worst error at each radius, in steps of

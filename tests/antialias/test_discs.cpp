@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "exact_share.h"
 #include "picture.h"
 
 namespace pse::antialias::test {
@@ -13,25 +14,6 @@ namespace {
 constexpr double one_step = 1.0 / 255;
 
 std::string text(double value) { return "(" + std::to_string(value) + ")"; }
-
-// The share of the chapter's kernel inside a disc whose centre is a away, by rings of equal weight
-// around the pixel's centre: one of radius r has the angle 2 acos(..) inside.
-double cubic_share(double dx, double dy, double radius) {
-  constexpr int rings = 3000;
-  const double a = std::hypot(dx, dy);
-  if (a > radius + 0.5) return 0;
-  if (a + 0.5 < radius) return 1;
-  double share = 0;
-  for (int i = 0; i < rings; ++i) {
-    const double u = (i + 0.5) / rings, r = 0.5 * std::sqrt(1 - std::pow(1 - u, 2.0 / 3));
-    if (a + r <= radius)
-      share += 1;
-    else if (std::abs(a - r) < radius)
-      share += std::acos(std::clamp((a * a + r * r - radius * radius) / (2 * a * r), -1.0, 1.0)) /
-               std::numbers::pi;
-  }
-  return share / rings;
-}
 
 // The area of a disc within the unit square around (dx, dy) from its centre, by columns.
 double box_share(double dx, double dy, double radius) {
@@ -64,7 +46,7 @@ double worst_error(FilterKind kind, double radius) {
       for (int x = 0; x < size; ++x) {
         const double dx = x + 0.5 - cx, dy = y + 0.5 - cy;
         const double exact =
-            kind == FilterKind::box ? box_share(dx, dy, radius) : cubic_share(dx, dy, radius);
+            kind == FilterKind::box ? box_share(dx, dy, radius) : share_of_disc(std::hypot(dx, dy), radius);
         worst = std::max(worst, std::abs(double(picture.at(x, y)) - exact));
       }
   }
@@ -81,9 +63,9 @@ TEST(Discs, TheExactResponses) {
   EXPECT_NEAR(box_share(0, 0, 0.5), 0.7853981633974483, 1e-5);
   EXPECT_NEAR(box_share(0, 0, 0.6), 0.9509111307851082, 1e-5);
   EXPECT_NEAR(box_share(0, 0, 0.70710678), 1, 1e-5);
-  EXPECT_EQ(cubic_share(0, 0, 0.5), 1);
+  EXPECT_EQ(share_of_disc(0, 0.5), 1);
   // The kernel (12 / pi) sqrt(1/4 - r^2) integrated to r: 1 - (1 - 4 r^2)^(3/2).
-  EXPECT_NEAR(cubic_share(0, 0, 0.3), 1 - std::pow(1 - 4 * 0.09, 1.5), 1e-3);
+  EXPECT_NEAR(share_of_disc(0, 0.3), 1 - std::pow(1 - 4 * 0.09, 1.5), 1e-3);
 }
 
 // Within 1/255 wherever the disc lies between the pixels. The other radii of every_radius have a

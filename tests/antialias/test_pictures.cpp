@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "exact_share.h"
 #include "picture.h"
 
 namespace pse::antialias::test {
@@ -45,26 +46,6 @@ TEST(Pictures, HalfPlanesAtEveryAngleAreExact) {
   for (const FilterKind kind : {cubic, box, disc, cone, paraboloid, gauss})
     EXPECT_LT(worst_half_plane(kind, procedural(kind)), one_step / 2) << int(kind);
   EXPECT_GT(worst_half_plane(cubic, plain()), 0.4);  // what the test would find
-}
-
-// The share of the chapter's kernel inside a disc, by rings around the pixel's centre: a ring of
-// radius r at distance a from the disc's centre has the angle 2 acos(..) inside.
-double share_of_disc(double a, double radius) {
-  constexpr int rings = 4000;
-  double share = 0;
-  for (int i = 0; i < rings; ++i) {
-    // Rings of equal weight.
-    const double u = (i + 0.5) / rings;
-    const double r = 0.5 * std::sqrt(1 - std::pow(1 - u, 2.0 / 3));
-    double inside = 0;
-    if (a + r <= radius)
-      inside = 1;
-    else if (std::abs(a - r) < radius)
-      inside = std::acos(std::clamp((a * a + r * r - radius * radius) / (2 * a * r), -1.0, 1.0)) /
-               std::numbers::pi;
-    share += inside / rings;
-  }
-  return share;
 }
 
 TEST(Pictures, DiscsFromLargeToSmallAreExact) {

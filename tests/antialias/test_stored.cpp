@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "antialias/fit.h"
+#include "exact_share.h"
 #include "picture.h"
 
 namespace pse::antialias::test {
@@ -123,23 +124,6 @@ TEST(Stored, HalfPlanesAtEveryAngleAreExact) {
     EXPECT_GT(picture.counts.blended, 0);
     EXPECT_EQ(picture.counts.left, 0);
   }
-}
-
-// As in test_discs.cpp.
-double share_of_disc(double a, double radius) {
-  constexpr int rings = 2000;
-  if (a > radius + 0.5) return 0;
-  if (a + 0.5 < radius) return 1;
-  double share = 0;
-  for (int i = 0; i < rings; ++i) {
-    const double u = (i + 0.5) / rings, r = 0.5 * std::sqrt(1 - std::pow(1 - u, 2.0 / 3));
-    if (a + r <= radius)
-      share += 1;
-    else if (std::abs(a - r) < radius)
-      share += std::acos(std::clamp((a * a + r * r - radius * radius) / (2 * a * r), -1.0, 1.0)) /
-               std::numbers::pi;
-  }
-  return share / rings;
 }
 
 TEST(Stored, DiscsOfRampsAreExact) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "antialias/four.h"
 #include "noise/math.h"
 
 namespace pse::antialias {
@@ -28,6 +29,18 @@ float normal_integral(float x) {
            t * (-0.284496736f + t * (1.421413741f + t * (-1.453152027f + t * 1.061405429f))));
   const float tail = 0.5f * sum * num::exp(-z * z);
   return x < 0 ? tail : 1 - tail;
+}
+
+// Of the chapter's kernel, of radius 1/2. V: a number or four.
+template <class V>
+V cubic_share(V d) {
+  const V t = clamped(d + 0.5f, 0, 1);
+  return t * t * (3 - 2 * t);
+}
+template <class V>
+V cubic_moment(V d) {
+  const V square = larger(0.25f - d * d, V{});
+  return 1.5f * square * square;
 }
 
 // The larger and the smaller of |nx| and |ny|.
@@ -105,7 +118,7 @@ float Filter::share(float distance, float nx, float ny) const {
   const float s = root(1 - d * d), t = std::abs(d);
   switch (kind_) {
     case FilterKind::cubic:
-      return (d + 0.5f) * (d + 0.5f) * (3 - 2 * (d + 0.5f));
+      return cubic_share(d);
     case FilterKind::box:
       return box_share(d, nx, ny);
     case FilterKind::disc:
@@ -129,7 +142,7 @@ float Filter::moment(float distance, float nx, float ny) const {
   const auto of_unit = [&]() -> float {
     switch (kind_) {
       case FilterKind::cubic:
-        return 1.5f * (0.25f - d * d) * (0.25f - d * d);
+        return cubic_moment(d);
       case FilterKind::box:
         return box_moment(d, nx, ny);
       case FilterKind::disc:
@@ -161,6 +174,25 @@ float Filter::edge_moment(float distance, float nx, float ny) const {
   clip(-d * ny, nx);
   if (!(low < high)) return 0;
   return (high * high * high - low * low * low) / 3 * scale_;
+}
+
+void Filter::measure(std::span<const float> d, std::span<const float> nx,
+                     std::span<const float> ny, const Measures& measures) const {
+  const auto& [shares, moments, edge_moments] = measures;
+  if (kind_ == FilterKind::cubic) {
+    for (std::size_t i = 0; i < d.size(); i += four) {
+      const Four distance = load(&d[i]) / scale_, moment = cubic_moment(distance) * scale_;
+      store(&shares[i], cubic_share(distance));
+      store(&moments[i], moment);
+      store(&edge_moments[i], moment);
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    shares[i] = share(d[i], nx[i], ny[i]);
+    moments[i] = moment(d[i], nx[i], ny[i]);
+    edge_moments[i] = edge_moment(d[i], nx[i], ny[i]);
+  }
 }
 
 std::array<float, 2> Filter::place(float u, float v) const {

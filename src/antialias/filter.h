@@ -6,6 +6,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string_view>
 
 namespace pse::antialias {
@@ -43,6 +44,13 @@ class Filter {
   // nearest: an edge of curvature k gains or loses k / 2 times this. For kernels that are symmetric
   // about their centre it is the same number as moment().
   float edge_moment(float d, float nx, float ny) const;
+
+  // All three for many edges at once. All spans are as long as d, a multiple of four.
+  struct Measures {
+    std::span<float> share, moment, edge_moment;
+  };
+  void measure(std::span<const float> d, std::span<const float> nx, std::span<const float> ny,
+               const Measures& measures) const;
 
   // An offset from the centre for a point of the unit square, such that all have equal weight.
   std::array<float, 2> place(float u, float v) const;

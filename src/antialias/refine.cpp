@@ -6,17 +6,35 @@
 #include <cmath>
 
 #include "antialias/derive.h"
+#include "antialias/four.h"
 
 namespace pse::antialias {
 
-// A pixel with one edge under its kernel.
-struct Refiner::Crossing {
-  Pixel pixel;
-  float distance;  // of the centre from the edge, positive on the side the normal points to
-  float nx, ny;
-  float bend = 0;   // how much the normal turns towards the tangent (-ny, nx) per pixel along it
-  float share = 0;  // of the kernel on the normal's side
-  float towards = 0, away = 0;  // to the middles of the sides, along the normal
+// Pixels with one edge under their kernels: numbers i of all lists belong together. The lists of
+// numbers are as long as the next multiple of four says; what lies behind the pixels has no meaning.
+struct Refiner::Crossings {
+  std::vector<Pixel> pixels;
+  // Of the centre from the edge, positive on the side the normal points to.
+  std::vector<float> distance;
+  std::vector<float> nx, ny;
+  // How much the normal turns towards the tangent (-ny, nx) per pixel along it.
+  std::vector<float> bend;
+  std::vector<float> share;          // of the kernel on the normal's side
+  std::vector<float> towards, away;  // to the middles of the sides, along the normal
+
+  std::size_t size() const { return pixels.size(); }
+  // Room in all lists for one number for each pixel.
+  void make_room() {
+    const std::size_t count = (size() + four - 1) / four * four;
+    for (auto* list : {&distance, &nx, &ny, &bend, &share, &towards, &away}) list->resize(count);
+  }
+  Line line(std::size_t i) const { return {distance[i], nx[i], ny[i]}; }
+  // Moves the pixel `from` to `to`.
+  void move(std::size_t from, std::size_t to) {
+    pixels[to] = pixels[from];
+    for (auto* list : {&distance, &nx, &ny, &bend, &share, &towards, &away})
+      (*list)[to] = (*list)[from];
+  }
 };
 
 namespace {
@@ -40,129 +58,176 @@ constexpr float on_edge = 0.01f;
 // A share so near to 0 or 1 leaves the pixel as it is.
 constexpr float least_share = 0.001f;
 
-// The distance x of a pixel from an edge, from what two places said of it: f / |f'| is `first` at
+// The distances x of pixels from an edge, from what two places said of it: f / |f'| is `first` at
 // the pixel, and `second` at `out` along the normal and s along the edge, which bends away by a
 // parabola. Along the normal f is x + b x^2, so f / |f'| is x - b x^2; a bend measured off the edge
 // is made that of the edge.
-float true_distance(float first, float second, float out, float& bend, float s) {
+Four true_distance(Four first, Four second, Four out, Four& bend, float s) {
   constexpr float least = 0.15f, most_b = 1, unseen = 0.001f;
-  const float measured = bend;
-  // Both say the same of a straight edge.
-  if (std::abs(measured) < unseen && std::abs(second - out - first) < unseen) return first;
-  float beside = second, x = first;
+  const Four measured = bend;
+  Four beside = second, x = first;
   for (int round = 0; round < 3; ++round) {
-    bend = measured / std::max(1 - measured * beside, 0.5f);
-    x = beside - out - bend * s * s / 2;
-    const float b = std::abs(x) < least ? 0 : std::clamp((x - first) / (x * x), -most_b, most_b);
+    bend = measured / larger(1 - measured * beside, Four{} + 0.5f);
+    x = beside - out - bend * (s * s / 2);
+    const Four b = choose(size(x) < least, Four{}, clamped((x - first) / (x * x), -most_b, most_b));
     beside = second + b * beside * beside;
   }
-  return x;
+  // Both say the same of a straight edge.
+  const Answers is_straight = (size(measured) < unseen) & (size(second - out - first) < unseen);
+  bend = choose(is_straight, measured, bend);
+  return choose(is_straight, first, x);
 }
 
 }  // namespace
 
-std::vector<Refiner::Crossing> Refiner::find_crossings(const std::vector<Pixel>& pixels,
-                                                       std::vector<Unclear>& unclear, Work& work,
-                                                       RunStatus& status) const {
+Refiner::Crossings Refiner::find_crossings(const std::vector<Pixel>& pixels,
+                                           std::vector<Unclear>& unclear, Work& work,
+                                           RunStatus& status) const {
   Places& places = work.places;
   places.clear();
   for (const Pixel& pixel : pixels) places.add(centre(pixel.x), centre(pixel.y));
   const Results& edges = edges_->run(work, status);
-  const float reach = options_.filter.reach();
-  std::vector<Crossing> crossings;
+  const float reach = options_.filter.reach(), farthest = std::max(farthest_explained, 2 * reach);
+  Crossings crossings;
+  crossings.pixels = pixels;
+  crossings.make_room();
+  std::size_t count = 0;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const Line first = line_of(edges, 0, i), second = line_of(edges, 1, i);
-    if (!(std::abs(first.distance) <= std::max(farthest_explained, 2 * reach)) ||
-        std::abs(second.distance) < reach)
+    const float nearest = std::abs(first.distance);
+    if (!(nearest <= farthest) || std::abs(second.distance) < reach) {
       unclear.push_back({pixels[i], {first, second}});
-    else if (std::abs(first.distance) < reach * 1.2f)
-      crossings.push_back({pixels[i], first.distance, first.nx, first.ny});
+    } else if (nearest < reach * 1.2f) {
+      crossings.pixels[count] = pixels[i];
+      crossings.distance[count] = first.distance;
+      crossings.nx[count] = first.nx, crossings.ny[count] = first.ny;
+      ++count;
+    }
   }
+  crossings.pixels.resize(count);
+  crossings.make_room();
   return crossings;
 }
 
 // Looks at each edge again, a little along it and on its far side: how it bends, and whether there
 // is another edge.
-void Refiner::follow(std::vector<Crossing>& crossings, std::vector<Unclear>& unclear, Work& work,
+void Refiner::follow(Crossings& crossings, std::vector<Unclear>& unclear, Work& work,
                      RunStatus& status) const {
   const float reach = options_.filter.reach(), s = along * reach;
+  const std::size_t count = crossings.size();
   Places& places = work.places;
-  places.clear();
-  std::vector<float> offsets;  // from the first guess of the edge along the normal
-  for (const Crossing& c : crossings) {
-    offsets.push_back(c.distance < 0 ? beyond * reach : -beyond * reach);
-    const float out = offsets.back() - c.distance;
-    places.add(centre(c.pixel.x) + double(out * c.nx - s * c.ny),
-               centre(c.pixel.y) + double(out * c.ny + s * c.nx));
+  places.x.resize(count), places.y.resize(count);
+  // From the first guess of the edge along the normal.
+  const auto offset = [&](auto distance) {
+    return distance < 0 ? decltype(distance){} + beyond * reach
+                        : decltype(distance){} - beyond * reach;
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    const Line c = crossings.line(i);
+    const float out = offset(c.distance) - c.distance;
+    places.x[i] = centre(crossings.pixels[i].x) + double(out * c.nx - s * c.ny);
+    places.y[i] = centre(crossings.pixels[i].y) + double(out * c.ny + s * c.nx);
   }
   const Results& edges = edges_->run(work, status);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < crossings.size(); ++i) {
-    Crossing c = crossings[i];
-    Line line = line_of(edges, 0, i);
-    const Line second = line_of(edges, 1, i);
-    float cosine = line.nx * c.nx + line.ny * c.ny;
-    if (cosine < 0) {
-      cosine = -cosine;
-      line = {-line.distance, -line.nx, -line.ny};
-    }
+
+  // Four edges at once; where the answer is no, there is more than one bent line.
+  std::vector<float> others(crossings.distance.size());
+  std::vector<std::int32_t> is_one(others.size());
+  for (std::size_t i = 0; i < count; i += four) {
+    const Four nx = load(&crossings.nx[i]), ny = load(&crossings.ny[i]);
+    const Four first = load(&crossings.distance[i]);
+    const Four out = offset(first) - first;
+    const Four x = load(edges[1] + i), y = load(edges[2] + i);
+    const Four cosine = x * nx + y * ny, turned = choose(cosine < 0, Four{} - 1, Four{} + 1);
+    const Four turn = (y * nx - x * ny) / cosine;
+    const Four beside = load(edges[0] + i) * turned;
     // The other line's distance from the pixel.
-    const double dx = centre(c.pixel.x) - places.x[i], dy = centre(c.pixel.y) - places.y[i];
-    const auto other = static_cast<float>(second.distance + second.nx * dx + second.ny * dy);
-    const float turn = (line.ny * c.nx - line.nx * c.ny) / cosine;
-    if (std::abs(other) < reach || !(std::abs(turn) < most_turn) ||
-        !(std::abs(line.distance) < reach)) {
-      unclear.push_back({c.pixel, {{c.distance, c.nx, c.ny}, {other, second.nx, second.ny}}});
+    const Four dx = s * ny - out * nx, dy = -(s * nx) - out * ny;
+    const Four other = load(edges[3] + i) + load(edges[4] + i) * dx + load(edges[5] + i) * dy;
+    const Answers one = (size(turn) < most_turn) & (size(beside) < reach) & ~(size(other) < reach);
+    Four bend = turn / s;
+    store(&crossings.distance[i], true_distance(first, beside / size(cosine), out, bend, s));
+    store(&crossings.bend[i], bend);
+    store(&others[i], other);
+    std::memcpy(&is_one[i], &one, sizeof one);
+  }
+  settle_shares(crossings);
+
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Line c = crossings.line(i);
+    if (is_one[i] == 0) {
+      const Line second = line_of(edges, 1, i);
+      unclear.push_back({crossings.pixels[i], {c, {others[i], second.nx, second.ny}}});
       continue;
     }
-    c.bend = turn / s;
-    c.distance =
-        true_distance(c.distance, line.distance / cosine, offsets[i] - c.distance, c.bend, s);
-    if (std::abs(c.distance) >= options_.filter.reach(c.nx, c.ny)) continue;
-    const float moment = options_.filter.moment(c.distance, c.nx, c.ny);
-    const float straight = options_.filter.share(c.distance, c.nx, c.ny);
-    // The parabola -bend y^2 / 2 for the line, to second order.
-    const float turning = options_.filter.edge_moment(c.distance, c.nx, c.ny);
-    c.share = straight + c.bend / 2 * turning * (1 - 0.75f * c.bend * c.distance);
-    if (!(c.share > least_share && c.share < 1 - least_share)) continue;
-    c.towards = moment / straight, c.away = -moment / (1 - straight);
-    crossings[kept++] = c;
+    const float share = crossings.share[i];
+    if (share > least_share && share < 1 - least_share) crossings.move(i, kept++);
   }
-  crossings.erase(crossings.begin() + static_cast<std::ptrdiff_t>(kept), crossings.end());
+  crossings.pixels.resize(kept);
+}
+
+// How the edges part the kernel.
+void Refiner::settle_shares(Crossings& c) const {
+  std::vector<float> turning(c.distance.size());
+  options_.filter.measure(c.distance, c.nx, c.ny, {c.share, c.towards, turning});
+  for (std::size_t i = 0; i < c.share.size(); i += four) {
+    const Four straight = load(&c.share[i]), moment = load(&c.towards[i]);
+    const Four bend = load(&c.bend[i]), distance = load(&c.distance[i]);
+    // The parabola -bend y^2 / 2 for the line, to second order.
+    const Four share =
+        straight + bend / 2 * load(&turning[i]) * (1 - 0.75f * bend * distance);
+    // An edge that is out of reach parts nothing.
+    const Answers is_whole = (straight <= 0) | (straight >= 1);
+    store(&c.share[i], choose(is_whole, straight, share));
+    store(&c.towards[i], moment / straight);
+    store(&c.away[i], -moment / (1 - straight));
+  }
 }
 
 // LERP(share, one side, other side), each side where the kernel's weight on it has its middle: what
 // changes evenly on a side then has exactly its mean.
-void Refiner::blend(const Tile& tile, const std::vector<Crossing>& crossings, Refined& result,
+void Refiner::blend(const Tile& tile, const Crossings& crossings, Refined& result,
                     std::vector<Unclear>& unclear, Work& work, RunStatus& status) const {
+  const std::size_t count = crossings.size();
   Places& places = work.places;
-  places.clear();
-  for (const Crossing& c : crossings) {
-    for (const float by : {c.towards, c.away})
-      places.add(centre(c.pixel.x) + double(by * c.nx), centre(c.pixel.y) + double(by * c.ny));
+  places.x.resize(2 * count), places.y.resize(2 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Line c = crossings.line(i);
+    const double x = centre(crossings.pixels[i].x), y = centre(crossings.pixels[i].y);
+    for (std::size_t side = 0; side < 2; ++side) {
+      const float by = side == 0 ? crossings.towards[i] : crossings.away[i];
+      places.x[2 * i + side] = x + double(by * c.nx), places.y[2 * i + side] = y + double(by * c.ny);
+    }
   }
   const Results& sides = program_.run(work, status);
-  for (std::size_t i = 0; i < crossings.size(); ++i) {
-    const Crossing& c = crossings[i];
-    const std::size_t here = tile.at(c.pixel.x, c.pixel.y), a = 2 * i, b = a + 1;
-    std::size_t own = c.distance < 0 ? b : a;
+  const std::size_t start = result.pixels.size();
+  result.resize(start + count);
+  std::size_t kept = start;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Pixel& pixel = crossings.pixels[i];
+    const float distance = crossings.distance[i], share = crossings.share[i];
+    const std::size_t here = tile.at(pixel.x, pixel.y), a = 2 * i, b = a + 1;
+    std::size_t own = distance < 0 ? b : a;
     // The sides must be two ways through the program, the pixel's own one of them.
     const float* path = sides[outputs_];
     // On which side a pixel lies whose middle is on the edge, rounding decides.
-    if (std::abs(c.distance) < on_edge && path[own] != tile.path()[here]) own = own == a ? b : a;
+    if (std::abs(distance) < on_edge && path[own] != tile.path()[here]) own = own == a ? b : a;
     const bool one_way = path[a] == path[b], strange = path[own] != tile.path()[here];
     bool doubt = false;
-    for (std::size_t o = 0; o < outputs_ && !doubt; ++o)
+    for (std::size_t o = 0; o < outputs_ && (one_way || strange) && !doubt; ++o)
       doubt = (one_way && differ(sides[o][a], sides[o][b])) ||
               (strange && differ(sides[o][own], tile.planes[o][here]));
     if (doubt) {
-      unclear.push_back({c.pixel});
+      unclear.push_back({pixel});
       continue;
     }
-    result.pixels.push_back(c.pixel);
+    result.pixels[kept] = pixel;
     for (std::size_t o = 0; o < outputs_; ++o)
-      result.values[o].push_back(sides[o][b] + c.share * (sides[o][a] - sides[o][b]));
+      result.values[o][kept] = sides[o][b] + share * (sides[o][a] - sides[o][b]);
+    ++kept;
   }
+  result.resize(kept);
 }
 
 Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts& counts) const {
@@ -171,14 +236,15 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
   if (pixels.empty()) return result;
   counts.filtered += static_cast<std::int64_t>(pixels.size());
   // The program knows the edges within objects, not those of the objects.
-  const auto inner = std::ranges::stable_partition(
-      pixels, [&](const Pixel& pixel) { return pixel.silhouette || edges_ == nullptr; });
+  const auto inner = std::ranges::stable_partition(pixels, [&](const Pixel& pixel) {
+    return pixel.silhouette || pixel.narrow || edges_ == nullptr;
+  });
   std::vector<Unclear> unclear;
   for (const Pixel& pixel : std::ranges::subrange(pixels.begin(), inner.begin()))
     unclear.push_back({pixel});
   pixels.erase(pixels.begin(), inner.begin());
   if (!pixels.empty()) {
-    std::vector<Crossing> crossings = find_crossings(pixels, unclear, work, status);
+    Crossings crossings = find_crossings(pixels, unclear, work, status);
     follow(crossings, unclear, work, status);
     blend(tile, crossings, result, unclear, work, status);
   }

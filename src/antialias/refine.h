@@ -29,7 +29,11 @@ struct Refined {
   std::vector<Pixel> pixels;
   std::vector<std::vector<float>> values;
   Refined(std::vector<Pixel> list, std::size_t outputs) : pixels(std::move(list)), values(outputs) {
-    for (auto& plane : values) plane.resize(pixels.size());
+    resize(pixels.size());
+  }
+  void resize(std::size_t count) {
+    pixels.resize(count);
+    for (auto& plane : values) plane.resize(count);
   }
 };
 
@@ -52,18 +56,18 @@ class Refiner {
   Refined supersample(std::vector<Pixel> pixels, Work& work, RunStatus& status) const;
 
  private:
-  struct Crossing;
+  struct Crossings;
   // A pixel that needs more than one look, and the edges that are known to be near.
   struct Unclear {
     Pixel pixel;
     Lines lines = {};
   };
-  std::vector<Crossing> find_crossings(const std::vector<Pixel>& pixels,
-                                       std::vector<Unclear>& unclear, Work& work,
-                                       RunStatus& status) const;
-  void follow(std::vector<Crossing>& crossings, std::vector<Unclear>& unclear, Work& work,
+  Crossings find_crossings(const std::vector<Pixel>& pixels, std::vector<Unclear>& unclear,
+                           Work& work, RunStatus& status) const;
+  void follow(Crossings& crossings, std::vector<Unclear>& unclear, Work& work,
               RunStatus& status) const;
-  void blend(const Tile& tile, const std::vector<Crossing>& crossings, Refined& result,
+  void settle_shares(Crossings& crossings) const;
+  void blend(const Tile& tile, const Crossings& crossings, Refined& result,
              std::vector<Unclear>& unclear, Work& work, RunStatus& status) const;
   template <class Visit>
   void sample(const std::vector<Pixel>& pixels, std::uint32_t first, std::uint32_t last, Work& work,

@@ -91,8 +91,9 @@ StoredRefiner::Values StoredRefiner::run(std::span<float* const> inputs, const S
 
 Refined StoredRefiner::refine(const Tile& tile, std::span<float* const> inputs, RunStatus& status,
                               Counts& counts) const {
-  Refined refined(find_edge_pixels(tile, options_.filter),
-                  output_of_.size());
+  std::vector<Pixel> found = find_edge_pixels(tile, options_.filter);
+  std::erase_if(found, [](const Pixel& pixel) { return pixel.narrow; });
+  Refined refined(std::move(found), output_of_.size());
   const std::vector<Pixel>& pixels = refined.pixels;
   counts.filtered += static_cast<std::int64_t>(pixels.size());
   for (auto& values : refined.values) values.assign(pixels.size(), 0);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "antialias/four.h"
 #include "antialias/refine.h"
 
 namespace pse::antialias {
@@ -16,33 +17,43 @@ constexpr std::size_t most_places = 1 << 12;
 constexpr std::uint32_t first_look = 16;
 constexpr float mean_per_range = 12;
 
-struct Summary {
-  float sum, low, high;
+// Sums are taken in a fixed order: of every eighth value, then of these.
+constexpr std::size_t lanes = 2 * four;
+using Sums = std::array<Four, 2>;
+
+float total(const Sums& sums, std::span<const float> rest) {
+  float all = 0;
+  for (const Four& part : sums)
+    for (std::size_t l = 0; l < four; ++l) all += part[l];
+  for (const float value : rest) all += value;
+  return all;
+}
+
+float sum_of(std::span<const float> values) {
+  Sums sums{};
+  std::size_t k = 0;
+  for (; k + lanes <= values.size(); k += lanes)
+    sums[0] += load(&values[k]), sums[1] += load(&values[k + four]);
+  return total(sums, values.subspan(k));
+}
+
+struct Range {
+  float low, high;
 };
 
-// Of `count` values, in a fixed order: as many sums as lanes, then these.
-Summary summary(const float* values, std::size_t count) {
-  constexpr std::size_t lanes = 8;
-  std::array<float, lanes> sum{}, low, high;
-  low.fill(values[0]), high.fill(values[0]);
+Range range_of(std::span<const float> values) {
+  Four lows = Four{} + values[0], highs = lows;
   std::size_t k = 0;
-  for (; k + lanes <= count; k += lanes)
-    for (std::size_t l = 0; l < lanes; ++l) {
-      const float value = values[k + l];
-      sum[l] += value;
-      low[l] = value < low[l] ? value : low[l];
-      high[l] = value > high[l] ? value : high[l];
-    }
-  Summary all{0, values[0], values[0]};
-  for (std::size_t l = 0; l < lanes; ++l) {
-    all.sum += sum[l];
-    all.low = std::min(all.low, low[l]), all.high = std::max(all.high, high[l]);
+  for (; k + four <= values.size(); k += four) {
+    const Four some = load(&values[k]);
+    lows = smaller(some, lows), highs = larger(some, highs);
   }
-  for (; k < count; ++k) {
-    all.sum += values[k];
-    all.low = std::min(all.low, values[k]), all.high = std::max(all.high, values[k]);
-  }
-  return all;
+  Range range{values[0], values[0]};
+  for (std::size_t l = 0; l < four; ++l)
+    range = {smaller(lows[l], range.low), larger(highs[l], range.high)};
+  for (; k < values.size(); ++k)
+    range = {smaller(values[k], range.low), larger(values[k], range.high)};
+  return range;
 }
 
 }  // namespace
@@ -79,7 +90,7 @@ Refined Refiner::supersample(std::vector<Pixel> pixels, Work& work, RunStatus& s
   sample(all.pixels, 0, count, work, status,
          [&](std::size_t i, const Results& results, std::size_t at) {
            for (std::size_t o = 0; o < outputs_; ++o)
-             all.values[o][i] = summary(results[o] + at, count).sum / static_cast<float>(count);
+             all.values[o][i] = sum_of({results[o] + at, count}) / static_cast<float>(count);
          });
   return all;
 }
@@ -142,8 +153,9 @@ void Refiner::settle(const std::vector<Unclear>& unclear, Refined& result, Work&
   sample(pixels, 0, look, work, status, [&](std::size_t i, const Results& results, std::size_t at) {
     bool is_uneven = false;
     for (std::size_t o = 0; o < outputs_; ++o) {
-      const auto [sum, low, high] = summary(results[o] + at, look);
-      result.values[o][start + i] = sum;
+      const std::span<const float> seen(results[o] + at, look);
+      const auto [low, high] = range_of(seen);
+      result.values[o][start + i] = sum_of(seen);
       is_uneven = is_uneven || differ(low, low + (high - low) / mean_per_range);
     }
     if (is_uneven && look < count) {
@@ -163,7 +175,7 @@ void Refiner::settle(const std::vector<Unclear>& unclear, Refined& result, Work&
       more, look, count, work, status, [&](std::size_t i, const Results& results, std::size_t at) {
         for (std::size_t o = 0; o < outputs_; ++o) {
           float& value = result.values[o][places[i]];
-          value = (value + summary(results[o] + at, count - look).sum) / static_cast<float>(count);
+          value = (value + sum_of({results[o] + at, count - look})) / static_cast<float>(count);
         }
       });
 }

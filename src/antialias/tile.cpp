@@ -1,11 +1,11 @@
-// Comparing neighbours: first paths alone, for whole rows at once, then values where paths differ.
+// Comparing neighbours: first paths alone, for whole rows at once, then values where paths differ,
+// for four pixels at once.
 #include "antialias/tile.h"
 
-#include <array>
 #include <bit>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
+
+#include "antialias/four.h"
 
 namespace pse::antialias {
 namespace {
@@ -13,25 +13,10 @@ namespace {
 // Steps of an output below this, of 1 and of its size, are no edges.
 constexpr float least_step = 0.01f;
 
-// Four values side by side, and four answers: 0 or -1.
-using Four = float __attribute__((vector_size(16)));
-using Answers = std::int32_t __attribute__((vector_size(16)));
-
-Four size(Four values) {
-  const Answers bits = std::bit_cast<Answers>(values) & 0x7fffffff;
-  return std::bit_cast<Four>(bits);
-}
-Four larger(Four a, Four b) { return a > b ? a : b; }
-bool any(Answers answers) {
-  const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(answers);
-  return (halves[0] | halves[1]) != 0;
-}
-
-// From a sample with `value` to the samples `there`, where those on its other side have `opposite`:
-// whether an output jumps. As differ(), without branches.
-Answers jumps(float value, Four there, Four opposite) {
+// From samples with the values `here` to the samples `there`, where those on their other sides have
+// `opposite`: whether an output jumps. As differ(), without branches.
+Answers jumps(Four here, Four there, Four opposite) {
   constexpr float huge = std::numeric_limits<float>::max();
-  const Four here = Four{} + value;
   const Four apart = size(here - there), largest = larger(size(here), size(there));
   const Answers is_same = (apart <= differ_least + differ_relative * largest) & (apart <= huge);
   const Answers both_nan = (here != here) & (there != there);
@@ -42,93 +27,115 @@ Answers jumps(float value, Four there, Four opposite) {
   return ~(is_same | both_nan | (here == there) | (beyond <= allowed));
 }
 
-// Four neighbours of a sample: two and those on their other sides.
-struct Neighbours {
-  std::ptrdiff_t a, b;
-
-  Four operator()(const float* at) const { return Four{at[a], at[-a], at[b], at[-b]}; }
-  static Four opposite(Four values) { return __builtin_shufflevector(values, values, 1, 0, 3, 2); }
+// What is seen of four pixels.
+struct Seen {
+  Answers edge{}, silhouette{}, narrow{};
 };
 
-// The first `count` of: along the axes, along the diagonals (corners reach into pixels from there),
-// two pixels away.
-template <std::size_t count>
-std::array<Neighbours, count> neighbours(std::ptrdiff_t width) {
-  const std::array<Neighbours, 6> all = {{{1, width},
-                                          {width - 1, width + 1},
-                                          {2, 2 * width},
-                                          {2 * width - 2, 2 * width + 2},
-                                          {2 * width - 1, 2 * width + 1},
-                                          {width - 2, width + 2}}};
-  std::array<Neighbours, count> some;
-  std::copy_n(all.begin(), count, some.begin());
-  return some;
-}
-
-template <std::size_t count>
+// Looks at all pixels whose columns and rows are within `reach`.
+template <int reach>
 class Search {
  public:
-  explicit Search(const Tile& tile) : tile_(tile), around_(neighbours<count>(tile.area.width())) {}
+  explicit Search(const Tile& tile)
+      : tile_(tile), width_(tile.area.width()), along_rows_(changes_along_rows()) {}
 
   std::vector<Pixel> run() const {
     std::vector<Pixel> found;
-    std::vector<std::uint32_t> changes(static_cast<std::size_t>(tile_.rect.width()));
+    const auto width = static_cast<std::size_t>(tile_.rect.width());
+    std::vector<std::uint32_t> changes(width + four);
     for (int y = tile_.rect.y0; y < tile_.rect.y1; ++y) {
       const std::size_t first = tile_.at(tile_.rect.x0, y);
-      if (!paths_change(first, changes)) continue;
-      for (std::size_t i = 0; i < changes.size(); ++i) {
-        bool silhouette = false;
-        if (changes[i] != 0 && is_edge(first + i, silhouette))
-          found.push_back({tile_.rect.x0 + static_cast<int>(i), y, silhouette});
+      if (!paths_change(first, std::span(changes).first(width))) continue;
+      for (std::size_t i = 0; i < width; i += four) {
+        if ((changes[i] | changes[i + 1] | changes[i + 2] | changes[i + 3]) == 0) continue;
+        const std::size_t count = std::min(four, width - i);
+        const Seen seen = look(first + i, count);
+        const Answers wanted = seen.edge | seen.narrow;
+        if (!any(wanted)) continue;
+        for (std::size_t k = 0; k < count; ++k)
+          if (wanted[k] != 0)
+            found.push_back({tile_.rect.x0 + static_cast<int>(i + k), y, seen.silhouette[k] != 0,
+                             seen.edge[k] == 0});
       }
     }
     return found;
   }
 
  private:
-  // For the samples of a row: not 0 where a neighbour's path is another. Whether there is any.
+  std::uint32_t path(std::size_t at) const {
+    return std::bit_cast<std::uint32_t>(tile_.path()[at]);
+  }
+
+  // For all samples of the area: not 0 where the path changes along the row within reach.
+  std::vector<std::uint32_t> changes_along_rows() const {
+    const auto all = static_cast<std::size_t>(width_) *
+                     static_cast<std::size_t>(tile_.area.height());
+    std::vector<std::uint32_t> changes(all);
+    for (std::size_t i = reach; i + reach < all; ++i) {
+      std::uint32_t change = 0;
+      for (std::size_t k = i - reach; k < i + reach; ++k) change |= path(k) ^ path(k + 1);
+      changes[i] = change;
+    }
+    return changes;
+  }
+
+  // For the samples of a row: not 0 where the path changes within reach. Whether there is any.
   bool paths_change(std::size_t first, std::span<std::uint32_t> changes) const {
-    const float* path = tile_.path() + first;
-    const auto bits = [path](std::ptrdiff_t at) { return std::bit_cast<std::uint32_t>(path[at]); };
+    const auto width = static_cast<std::size_t>(width_);
     std::uint32_t any = 0;
     for (std::size_t i = 0; i < changes.size(); ++i) {
-      const auto x = static_cast<std::ptrdiff_t>(i);
-      const std::uint32_t here = bits(x);
-      std::uint32_t change = 0;
-      for (const auto& [a, b] : around_)
-        change |= (bits(x + a) ^ here) | (bits(x - a) ^ here) | (bits(x + b) ^ here) |
-                  (bits(x - b) ^ here);
+      std::size_t at = first + i - reach * width;
+      std::uint32_t change = along_rows_[at];
+      for (int k = -reach; k < reach; ++k, at += width)
+        change |= (path(at) ^ path(at + width)) | along_rows_[at + width];
       changes[i] = change;
       any |= change;
     }
     return any != 0;
   }
 
-  // Whether an output jumps towards a neighbour with another path; and for one of these
-  // (`silhouette`) also the object is another.
-  bool is_edge(std::size_t here, bool& silhouette) const {
+  // `count` pixels in a row.
+  Seen look(std::size_t here, std::size_t count) const {
+    Seen seen;
+    look_along(seen, here, count, 1, true);
+    for (std::ptrdiff_t dx = 2; dx <= reach; ++dx) look_along(seen, here, count, dx, false);
+    for (std::ptrdiff_t dy = 1; dy <= reach; ++dy)
+      for (std::ptrdiff_t dx = -reach; dx <= reach; ++dx)
+        look_along(seen, here, count, dy * width_ + dx, dy == 1 && dx == 0);
+    seen.narrow &= ~seen.edge;
+    return seen;
+  }
+
+  // At the two neighbours `step` before and behind each.
+  void look_along(Seen& seen, std::size_t here, std::size_t count, std::ptrdiff_t step,
+                  bool is_next) const {
     const float* path = tile_.path() + here;
-    bool edge = false;
+    const Four way = load(path, count);
+    const Answers ahead = load(path + step, count) != way, back = load(path - step, count) != way;
+    if (!any(ahead | back)) return;
+    if (is_next) seen.narrow |= ahead & back;
+    Answers jumps_ahead{}, jumps_back{};
     for (std::size_t o = 0; o < tile_.outputs; ++o) {
       const float* at = tile_.planes[o] + here;
-      Answers found{}, objects{};
-      for (const Neighbours& four : around_) {
-        const Four there = four(at);
-        // Most ways through a program end in the same place.
-        if (!any(~(size(there - *at) <= differ_least))) continue;
-        const Answers jump = jumps(*at, there, Neighbours::opposite(there)) & (four(path) != *path);
-        found |= jump;
-        if (tile_.ids) objects |= jump & (four(tile_.ids + here) != tile_.ids[here]);
-      }
-      edge = edge || any(found);
-      silhouette = silhouette || any(objects);
-      if (edge && (!tile_.ids || silhouette)) break;
+      const Four value = load(at, count), a = load(at + step, count), b = load(at - step, count);
+      // Most ways through a program end in the same place.
+      const Answers far = (ahead & ~(size(a - value) <= differ_least)) |
+                          (back & ~(size(b - value) <= differ_least));
+      if (!any(far)) continue;
+      jumps_ahead |= ahead & jumps(value, a, b);
+      jumps_back |= back & jumps(value, b, a);
     }
-    return edge;
+    seen.edge |= jumps_ahead | jumps_back;
+    if (tile_.ids == nullptr) return;
+    const float* id = tile_.ids + here;
+    const Four object = load(id, count);
+    seen.silhouette |= (jumps_ahead & (load(id + step, count) != object)) |
+                       (jumps_back & (load(id - step, count) != object));
   }
 
   const Tile& tile_;
-  const std::array<Neighbours, count> around_;
+  const std::ptrdiff_t width_;
+  const std::vector<std::uint32_t> along_rows_;
 };
 
 }  // namespace
@@ -136,7 +143,7 @@ class Search {
 int apron_of(const Filter& filter) { return filter.reach() > 1.01f ? 2 : 1; }
 
 std::vector<Pixel> find_edge_pixels(const Tile& tile, const Filter& filter) {
-  return apron_of(filter) == 1 ? Search<2>(tile).run() : Search<6>(tile).run();
+  return apron_of(filter) == 1 ? Search<1>(tile).run() : Search<2>(tile).run();
 }
 
 }  // namespace pse::antialias

@@ -27,6 +27,9 @@ struct Tile {
 struct Pixel {
   int x = 0, y = 0;
   bool silhouette = false;  // a neighbour shows another object
+  // Nothing jumps, but both neighbours to the sides, or above and below, take other ways: more may
+  // be in between than a sample for each pixel shows.
+  bool narrow = false;
 };
 
 // Whether two values of an output look different; they do not where they are nearer than this.
@@ -43,9 +46,9 @@ inline bool differ(float a, float b) {
 int apron_of(const Filter& filter);
 
 // The pixels of tile.rect that have a neighbour whose path is another, across which some output
-// jumps: more than its slope on the near side explains. In row-major order. Neighbours are the
-// samples that an edge under the kernel separates from the pixel; tile.area must reach apron_of()
-// pixels around tile.rect. Depends on nothing but those samples.
+// jumps: more than its slope on the near side explains; and those that are narrow. In row-major
+// order. Neighbours are the samples that an edge under the kernel separates from the pixel;
+// tile.area must reach apron_of() pixels around tile.rect. Depends on nothing but those samples.
 std::vector<Pixel> find_edge_pixels(const Tile& tile, const Filter& filter);
 
 }  // namespace pse::antialias

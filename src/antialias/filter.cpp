@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "antialias/four.h"
+#include "antialias/lanes.h"
 #include "noise/math.h"
 
 namespace pse::antialias {
@@ -181,7 +181,7 @@ void Filter::measure(std::span<const float> d, std::span<const float> nx,
   const auto& [shares, moments, edge_moments] = measures;
   if (kind_ == FilterKind::cubic) {
     for (std::size_t i = 0; i < d.size(); i += four) {
-      const Four distance = load(&d[i]) / scale_, moment = cubic_moment(distance) * scale_;
+      const Four distance = load<Four>(&d[i]) / scale_, moment = cubic_moment(distance) * scale_;
       store(&shares[i], cubic_share(distance));
       store(&moments[i], moment);
       store(&edge_moments[i], moment);

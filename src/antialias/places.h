@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "antialias/tile.h"
 #include "stream/planes.h"
 #include "stream/program.h"
 #include "stream/sample_source.h"
@@ -34,6 +35,7 @@ class PlaceRunner;
 
 // One thread's memory, used again from run to run.
 struct Work {
+  Found found;
   Places places;    // where the next run is to be
   Results results;  // of the last run
   Scratch scratch;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "antialias/derive.h"
-#include "antialias/four.h"
+#include "antialias/lanes.h"
 
 namespace pse::antialias {
 
@@ -73,7 +73,7 @@ Four true_distance(Four first, Four second, Four out, Four& bend, float s) {
     beside = second + b * beside * beside;
   }
   // Both say the same of a straight edge.
-  const Answers is_straight = (size(measured) < unseen) & (size(second - out - first) < unseen);
+  const AnswersOf<Four> is_straight = (size(measured) < unseen) & (size(second - out - first) < unseen);
   bend = choose(is_straight, measured, bend);
   return choose(is_straight, first, x);
 }
@@ -134,22 +134,22 @@ void Refiner::follow(Crossings& crossings, std::vector<Unclear>& unclear, Work& 
   std::vector<float> others(crossings.distance.size());
   std::vector<std::int32_t> is_one(others.size());
   for (std::size_t i = 0; i < count; i += four) {
-    const Four nx = load(&crossings.nx[i]), ny = load(&crossings.ny[i]);
-    const Four first = load(&crossings.distance[i]);
+    const Four nx = load<Four>(&crossings.nx[i]), ny = load<Four>(&crossings.ny[i]);
+    const Four first = load<Four>(&crossings.distance[i]);
     const Four out = offset(first) - first;
-    const Four x = load(edges[1] + i), y = load(edges[2] + i);
+    const Four x = load<Four>(edges[1] + i), y = load<Four>(edges[2] + i);
     const Four cosine = x * nx + y * ny, turned = choose(cosine < 0, Four{} - 1, Four{} + 1);
     const Four turn = (y * nx - x * ny) / cosine;
-    const Four beside = load(edges[0] + i) * turned;
+    const Four beside = load<Four>(edges[0] + i) * turned;
     // The other line's distance from the pixel.
     const Four dx = s * ny - out * nx, dy = -(s * nx) - out * ny;
-    const Four other = load(edges[3] + i) + load(edges[4] + i) * dx + load(edges[5] + i) * dy;
-    const Answers one = (size(turn) < most_turn) & (size(beside) < reach) & ~(size(other) < reach);
+    const Four other = load<Four>(edges[3] + i) + load<Four>(edges[4] + i) * dx + load<Four>(edges[5] + i) * dy;
+    const AnswersOf<Four> one = (size(turn) < most_turn) & (size(beside) < reach) & ~(size(other) < reach);
     Four bend = turn / s;
     store(&crossings.distance[i], true_distance(first, beside / size(cosine), out, bend, s));
     store(&crossings.bend[i], bend);
     store(&others[i], other);
-    std::memcpy(&is_one[i], &one, sizeof one);
+    store(&is_one[i], one);
   }
   settle_shares(crossings);
 
@@ -172,13 +172,13 @@ void Refiner::settle_shares(Crossings& c) const {
   std::vector<float> turning(c.distance.size());
   options_.filter.measure(c.distance, c.nx, c.ny, {c.share, c.towards, turning});
   for (std::size_t i = 0; i < c.share.size(); i += four) {
-    const Four straight = load(&c.share[i]), moment = load(&c.towards[i]);
-    const Four bend = load(&c.bend[i]), distance = load(&c.distance[i]);
+    const Four straight = load<Four>(&c.share[i]), moment = load<Four>(&c.towards[i]);
+    const Four bend = load<Four>(&c.bend[i]), distance = load<Four>(&c.distance[i]);
     // The parabola -bend y^2 / 2 for the line, to second order.
     const Four share =
-        straight + bend / 2 * load(&turning[i]) * (1 - 0.75f * bend * distance);
+        straight + bend / 2 * load<Four>(&turning[i]) * (1 - 0.75f * bend * distance);
     // An edge that is out of reach parts nothing.
-    const Answers is_whole = (straight <= 0) | (straight >= 1);
+    const AnswersOf<Four> is_whole = (straight <= 0) | (straight >= 1);
     store(&c.share[i], choose(is_whole, straight, share));
     store(&c.towards[i], moment / straight);
     store(&c.away[i], -moment / (1 - straight));
@@ -231,7 +231,8 @@ void Refiner::blend(const Tile& tile, const Crossings& crossings, Refined& resul
 }
 
 Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts& counts) const {
-  std::vector<Pixel> pixels = find_edge_pixels(tile, options_.filter);
+  const std::span<const Pixel> found = find_edge_pixels(tile, options_.filter, work.found);
+  std::vector<Pixel> pixels(found.begin(), found.end());
   Refined result({}, outputs_);
   if (pixels.empty()) return result;
   counts.filtered += static_cast<std::int64_t>(pixels.size());

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 #include "stream/planes.h"
@@ -91,9 +92,11 @@ StoredRefiner::Values StoredRefiner::run(std::span<float* const> inputs, const S
 
 Refined StoredRefiner::refine(const Tile& tile, std::span<float* const> inputs, RunStatus& status,
                               Counts& counts) const {
-  std::vector<Pixel> found = find_edge_pixels(tile, options_.filter);
-  std::erase_if(found, [](const Pixel& pixel) { return pixel.narrow; });
-  Refined refined(std::move(found), output_of_.size());
+  Found memory;
+  std::vector<Pixel> edges;
+  std::ranges::copy_if(find_edge_pixels(tile, options_.filter, memory), std::back_inserter(edges),
+                       [](const Pixel& pixel) { return !pixel.narrow; });
+  Refined refined(std::move(edges), output_of_.size());
   const std::vector<Pixel>& pixels = refined.pixels;
   counts.filtered += static_cast<std::int64_t>(pixels.size());
   for (auto& values : refined.values) values.assign(pixels.size(), 0);

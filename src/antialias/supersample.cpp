@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "antialias/four.h"
+#include "antialias/lanes.h"
 #include "antialias/refine.h"
 
 namespace pse::antialias {
@@ -33,7 +33,7 @@ float sum_of(std::span<const float> values) {
   Sums sums{};
   std::size_t k = 0;
   for (; k + lanes <= values.size(); k += lanes)
-    sums[0] += load(&values[k]), sums[1] += load(&values[k + four]);
+    sums[0] += load<Four>(&values[k]), sums[1] += load<Four>(&values[k + four]);
   return total(sums, values.subspan(k));
 }
 
@@ -45,7 +45,7 @@ Range range_of(std::span<const float> values) {
   Four lows = Four{} + values[0], highs = lows;
   std::size_t k = 0;
   for (; k + four <= values.size(); k += four) {
-    const Four some = load(&values[k]);
+    const Four some = load<Four>(&values[k]);
     lows = smaller(some, lows), highs = larger(some, highs);
   }
   Range range{values[0], values[0]};

@@ -45,10 +45,16 @@ inline bool differ(float a, float b) {
 // How many pixels around a tile find_edge_pixels() looks at.
 int apron_of(const Filter& filter);
 
+// Memory of find_edge_pixels(), used again from tile to tile.
+struct Found {
+  std::vector<std::int32_t> changes;
+  std::vector<Pixel> pixels;
+};
+
 // The pixels of tile.rect that have a neighbour whose path is another, across which some output
 // jumps: more than its slope on the near side explains; and those that are narrow. In row-major
 // order. Neighbours are the samples that an edge under the kernel separates from the pixel;
 // tile.area must reach apron_of() pixels around tile.rect. Depends on nothing but those samples.
-std::vector<Pixel> find_edge_pixels(const Tile& tile, const Filter& filter);
+std::span<const Pixel> find_edge_pixels(const Tile& tile, const Filter& filter, Found& found);
 
 }  // namespace pse::antialias

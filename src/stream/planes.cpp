@@ -21,11 +21,16 @@ std::size_t stride(std::int64_t capacity) {
   return (lines + shift) * line;
 }
 
+// Of all planes: with room to align the first, and to read on behind the last.
+std::size_t floats(std::size_t count, std::int64_t capacity) {
+  return count * stride(capacity) + 2 * line;
+}
+
 }  // namespace
 
 Planes::Planes(const std::vector<bool>& used, std::int64_t capacity) {
   const auto count = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
-  memory_.resize(count * stride(capacity) + line);
+  memory_.resize(floats(count, capacity));
   void* start = memory_.data();
   std::size_t space = memory_.size() * sizeof(float);
   auto* next = static_cast<float*>(std::align(line * sizeof(float), sizeof(float), start, space));
@@ -37,7 +42,7 @@ Planes::Planes(const std::vector<bool>& used, std::int64_t capacity) {
 
 std::size_t Planes::bytes(const std::vector<bool>& used, std::int64_t capacity) {
   const auto count = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
-  return (count * stride(capacity) + line) * sizeof(float);
+  return floats(count, capacity) * sizeof(float);
 }
 
 }  // namespace pse

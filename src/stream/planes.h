@@ -9,7 +9,8 @@
 
 namespace pse {
 
-// Each plane starts at a multiple of 64 bytes and holds a multiple of 16 floats. Planes do not
+// Each plane starts at a multiple of 64 bytes and holds a multiple of 16 floats; 16 more behind it
+// may be read. Planes do not
 // start at addresses that are equal or near modulo 4096: there a load would wait for an earlier
 // store to another plane.
 class Planes {

@@ -1,0 +1,183 @@
+// The comparing of neighbours (tile.h) itself, for the instructions that the including file is
+// compiled for: neighbours.cpp and neighbours_avx2.cpp. Paths first, for whole rows at once, then
+// values where paths differ, for eight pixels at once. Nothing here may be kept out of line but what
+// is local, since the linker would take one such function for both; hence no standard containers.
+#pragma once
+
+#include "antialias/lanes.h"
+#include "antialias/search.h"
+
+namespace pse::antialias {
+
+namespace {
+
+// Pixels that are compared at once.
+constexpr std::size_t eight = 8;
+using Eight = LanesOf<eight>::Floats;
+using Answers = AnswersOf<Eight>;
+
+// Steps of an output below this, of 1 and of its size, are no edges: they cannot be told from the
+// texture's own detail.
+constexpr float least_step = 0.01f;
+
+// Nearer than this to a value, others do not jump from it.
+[[gnu::always_inline]] inline Eight least_step_from(Eight value) {
+  constexpr float huge = 1e30f;
+  return least_step * (1 + smaller(size(value), Eight{} + huge));
+}
+
+// Whether an output jumps from samples with the values `here` to opposite neighbours of them.
+struct Jumps {
+  Answers ahead, back;
+};
+[[gnu::always_inline]] inline Jumps jumps(Eight here, Eight ahead, Eight back, Eight least) {
+  const Eight to_a = ahead - here, to_b = back - here;
+  // The neighbour on the other side tells the slope, and so where this one would be without a jump.
+  const Eight beyond = size(to_a + to_b), up = size(to_a), down = size(to_b);
+  const Answers same_a = bits(ahead) == bits(here), same_b = bits(back) == bits(here);
+  return {~((up <= least) | (beyond <= larger(down, least)) | same_a),
+          ~((down <= least) | (beyond <= larger(up, least)) | same_b)};
+}
+
+// What is seen of eight pixels.
+struct Seen {
+  Answers edge{}, silhouette{}, narrow{};
+};
+
+// Looks at all pixels whose columns and rows are within `reach`.
+template <int reach>
+class Search {
+ public:
+  [[gnu::always_inline]] Search(const Tile& tile, const SearchRoom& room)
+      : tile_(tile),
+        room_(room),
+        width_(tile.area.width()),
+        samples_(width_ * tile.area.height()),
+        path_(tile.path()) {
+    std::ptrdiff_t* step = steps_;
+    for (std::ptrdiff_t dx = 1; dx <= reach; ++dx) *step++ = dx;
+    for (std::ptrdiff_t dy = 1; dy <= reach; ++dy)
+      for (std::ptrdiff_t dx = -reach; dx <= reach; ++dx) *step++ = dy * width_ + dx;
+  }
+
+  [[gnu::always_inline]] std::size_t run() const {
+    see_changes_along_rows();
+    Pixel* next = room_.found;
+    const std::ptrdiff_t width = tile_.rect.width();
+    std::int32_t* changes = room_.changes + samples_;
+    for (int y = tile_.rect.y0; y < tile_.rect.y1; ++y) {
+      const auto first = static_cast<std::ptrdiff_t>(tile_.at(tile_.rect.x0, y));
+      if (!see_changes(first, width, changes)) continue;
+      for (std::ptrdiff_t i = 0; i < width; i += eight) {
+        if (!any(load<Answers>(changes + i))) continue;
+        const Seen seen = look(first + i);
+        const Answers wanted = seen.edge | seen.narrow;
+        if (!any(wanted)) continue;
+        // All are written, and what is not wanted is written over.
+        const int x = tile_.rect.x0 + static_cast<int>(i);
+        const int count = static_cast<int>(width - i < 8 ? width - i : 8);
+        for (int k = 0; k < count; ++k) {
+          *next = {x + k, y, seen.silhouette[k] != 0, seen.edge[k] == 0};
+          next -= wanted[k];
+        }
+      }
+    }
+    return static_cast<std::size_t>(next - room_.found);
+  }
+
+ private:
+  // For all samples of the area: not 0 where the path changes along the row within reach.
+  [[gnu::always_inline]] void see_changes_along_rows() const {
+    for (std::ptrdiff_t i = reach; i + reach < samples_; i += eight) {
+      const Answers here = load<Answers>(path_ + i);
+      Answers change{};
+      for (int k = 1; k <= reach; ++k)
+        change |= (load<Answers>(path_ + i - k) ^ here) | (load<Answers>(path_ + i + k) ^ here);
+      store(room_.changes + i, change);
+    }
+  }
+
+  // For the samples of a row: not 0 where the path changes within reach. Whether there is any.
+  [[gnu::always_inline]] bool see_changes(std::ptrdiff_t first, std::ptrdiff_t count,
+                                          std::int32_t* changes) const {
+    Answers any_change{};
+    for (std::ptrdiff_t i = 0; i < count; i += eight) {
+      const std::ptrdiff_t at = first + i;
+      const Answers here = load<Answers>(path_ + at);
+      Answers change = load<Answers>(room_.changes + at);
+      for (std::ptrdiff_t k = width_; k <= reach * width_; k += width_)
+        change |= (load<Answers>(path_ + at - k) ^ here) | load<Answers>(room_.changes + at - k) |
+                  (load<Answers>(path_ + at + k) ^ here) | load<Answers>(room_.changes + at + k);
+      store(changes + i, change);
+      any_change |= change;
+    }
+    return any(any_change);
+  }
+
+  // Eight pixels in a row; what is said of those behind the row's end has no meaning.
+  [[gnu::always_inline]] Seen look(std::ptrdiff_t here) const {
+    Seen seen = look_at_paths(here);
+    if (!any(seen.edge)) return seen;
+    seen.edge = Answers{};
+    for (const std::ptrdiff_t step : steps_) look_along(seen, here, step);
+    seen.narrow &= ~seen.edge;
+    return seen;
+  }
+
+  // Which pixels are narrow, if none of them is an edge; and which may be one (`edge`): most ways
+  // through a program end in the same place.
+  [[gnu::always_inline]] Seen look_at_paths(std::ptrdiff_t here) const {
+    Seen seen;
+    const Answers way = load<Answers>(path_ + here);
+    for (const std::ptrdiff_t step : {std::ptrdiff_t{1}, width_})
+      seen.narrow |= (load<Answers>(path_ + here + step) != way) &
+                     (load<Answers>(path_ + here - step) != way);
+    for (std::size_t o = 0; o < tile_.outputs; ++o) {
+      const float* at = tile_.planes[o] + here;
+      const Eight value = load<Eight>(at), least = least_step_from(value);
+      Answers near = Answers{} - 1;
+      for (const std::ptrdiff_t step : steps_)
+        near &= (size(load<Eight>(at + step) - value) <= least) &
+                (size(load<Eight>(at - step) - value) <= least);
+      seen.edge |= ~near;
+    }
+    return seen;
+  }
+
+  // At the two neighbours `step` before and behind each.
+  [[gnu::always_inline]] void look_along(Seen& seen, std::ptrdiff_t here,
+                                         std::ptrdiff_t step) const {
+    const Answers way = load<Answers>(path_ + here);
+    const Answers ahead = load<Answers>(path_ + here + step) != way;
+    const Answers back = load<Answers>(path_ + here - step) != way;
+    Answers jumps_ahead{}, jumps_back{};
+    for (std::size_t o = 0; o < tile_.outputs; ++o) {
+      const float* at = tile_.planes[o] + here;
+      const Eight value = load<Eight>(at);
+      const Jumps found = jumps(value, load<Eight>(at + step), load<Eight>(at - step),
+                                least_step_from(value));
+      jumps_ahead |= ahead & found.ahead;
+      jumps_back |= back & found.back;
+    }
+    seen.edge |= jumps_ahead | jumps_back;
+    if (tile_.ids == nullptr) return;
+    const float* id = tile_.ids + here;
+    const Eight object = load<Eight>(id);
+    seen.silhouette |= (jumps_ahead & (load<Eight>(id + step) != object)) |
+                       (jumps_back & (load<Eight>(id - step) != object));
+  }
+
+  const Tile& tile_;
+  const SearchRoom& room_;
+  const std::ptrdiff_t width_, samples_;
+  const float* const path_;
+  std::ptrdiff_t steps_[2 * reach * (reach + 1)];  // to one of each two opposite neighbours
+};
+
+template <int reach>
+std::size_t search(const Tile& tile, const SearchRoom& room) {
+  return Search<reach>(tile, room).run();
+}
+
+}  // namespace
+}  // namespace pse::antialias

@@ -1,0 +1,8 @@
+// For processors with AVX2, where the build knows how to compile for them.
+#include "antialias/neighbours.h"
+
+namespace pse::antialias {
+
+SearchFunction search_for_avx2(int reach) { return reach == 1 ? search<1> : search<2>; }
+
+}  // namespace pse::antialias

@@ -75,7 +75,7 @@ Picture render(const antialias::Programs& programs, const Settings& settings, in
     values.resize(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
   const antialias::Options options{
       .mode = samples > 0 ? antialias::Mode::supersample : antialias::Mode::procedural,
-      .samples = samples > 0 ? samples : 64};
+      .samples = samples > 0 ? samples : antialias::Options().samples};
   const antialias::Host host{
       [&](const Program& program) {
         FrameState state;

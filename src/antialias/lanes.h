@@ -40,6 +40,12 @@ template <class V>
   return __builtin_bit_cast(AnswersOf<V>, values);
 }
 
+// Of whole numbers.
+template <class V>
+[[gnu::always_inline]] inline AnswersOf<V> whole(V values) {
+  return __builtin_convertvector(values, AnswersOf<V>);
+}
+
 // The same of a number and of many.
 [[gnu::always_inline]] inline float size(float value) { return std::abs(value); }
 template <class V>

@@ -128,10 +128,8 @@ class Search {
   // through a program end in the same place.
   [[gnu::always_inline]] Seen look_at_paths(std::ptrdiff_t here) const {
     Seen seen;
-    const Answers way = load<Answers>(path_ + here);
     for (const std::ptrdiff_t step : {std::ptrdiff_t{1}, width_})
-      seen.narrow |= (load<Answers>(path_ + here + step) != way) &
-                     (load<Answers>(path_ + here - step) != way);
+      seen.narrow |= leap(here, here + step) | leap(here, here - step);
     for (std::size_t o = 0; o < tile_.outputs; ++o) {
       const float* at = tile_.planes[o] + here;
       const Eight value = load<Eight>(at), least = least_step_from(value);
@@ -142,6 +140,13 @@ class Search {
       seen.edge |= ~near;
     }
     return seen;
+  }
+
+  // Whether more than one decision falls differently (path.cpp).
+  [[gnu::always_inline]] Answers leap(std::ptrdiff_t here, std::ptrdiff_t there) const {
+    const Eight a = load<Eight>(path_ + here), b = load<Eight>(path_ + there);
+    const Answers steps = (whole(a) - whole(b)) & 7;
+    return (a != b) & (steps != 1) & (steps != 7);
   }
 
   // At the two neighbours `step` before and behind each.

@@ -1,5 +1,6 @@
 // The path is a sum of a random number for each outcome, so order does not matter between
-// decisions; every turn of a loop multiplies what it adds to.
+// decisions; every turn of a loop multiplies what it adds to. All these numbers are 1 more than a
+// multiple of 8, so paths also count: one step at one decision changes them by 1 modulo 8.
 #include "antialias/path.h"
 
 #include "passes/emit.h"
@@ -43,13 +44,13 @@ class Paths {
   }
 
  private:
-  // A random odd number.
+  // A random number, 1 modulo 8.
   std::int32_t next_factor() {
     state_ += 0x9e3779b9u;
     std::uint32_t h = state_;
     h = (h ^ (h >> 16)) * 0x85ebca6bu;
     h = (h ^ (h >> 13)) * 0xc2b2ae35u;
-    return static_cast<std::int32_t>((h ^ (h >> 16)) | 1u);
+    return static_cast<std::int32_t>(((h ^ (h >> 16)) & ~7u) | 1u);
   }
 
   Value outcome(const Emit& emit, const Instruction& in, Value path) {
@@ -131,7 +132,8 @@ void add_path(ir::Module& module, const Decisions& decisions) {
   main.body.body.insert(main.body.body.begin(), std::move(start.front()));
   const Emit emit(main, main.body.body);
   // Floats hold whole numbers of 24 bits exactly.
-  const Value low = emit(Op::ishr, {path, emit.integer(8)});
+  const Value high = emit(Op::ishl, {path, emit.integer(8)});
+  const Value low = emit(Op::ishr, {high, emit.integer(8)});
   main.body.yields.push_back(emit(Op::i2f, {low}));
   module.outputs.push_back({path_name});
 }

@@ -17,7 +17,7 @@ enum class Mode : std::uint8_t {
 
 struct Options {
   Mode mode = Mode::procedural;
-  int samples = 64;  // of a pixel that is supersampled
+  int samples = 32;  // of a pixel that is supersampled
   Filter filter = Filter();
 };
 

@@ -232,20 +232,21 @@ void Refiner::blend(const Tile& tile, const Crossings& crossings, Refined& resul
 
 Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts& counts) const {
   const std::span<const Pixel> found = find_edge_pixels(tile, options_.filter, work.found);
-  std::vector<Pixel> pixels(found.begin(), found.end());
   Refined result({}, outputs_);
-  if (pixels.empty()) return result;
-  counts.filtered += static_cast<std::int64_t>(pixels.size());
-  // The program knows the edges within objects, not those of the objects.
-  const auto inner = std::ranges::stable_partition(pixels, [&](const Pixel& pixel) {
-    return pixel.silhouette || pixel.narrow || edges_ == nullptr;
-  });
+  if (found.empty()) return result;
+  counts.filtered += static_cast<std::int64_t>(found.size());
+  std::vector<Pixel> inner, narrow;
   std::vector<Unclear> unclear;
-  for (const Pixel& pixel : std::ranges::subrange(pixels.begin(), inner.begin()))
-    unclear.push_back({pixel});
-  pixels.erase(pixels.begin(), inner.begin());
-  if (!pixels.empty()) {
-    Crossings crossings = find_crossings(pixels, unclear, work, status);
+  for (const Pixel& pixel : found) {
+    // The program knows the edges within objects, not those of the objects.
+    if (pixel.silhouette || edges_ == nullptr)
+      unclear.push_back({pixel});
+    else
+      (pixel.narrow ? narrow : inner).push_back(pixel);
+  }
+  if (!narrow.empty()) glance(narrow, unclear, work, status);
+  if (!inner.empty()) {
+    Crossings crossings = find_crossings(inner, unclear, work, status);
     follow(crossings, unclear, work, status);
     blend(tile, crossings, result, unclear, work, status);
   }

@@ -69,11 +69,14 @@ class Refiner {
   void settle_shares(Crossings& crossings) const;
   void blend(const Tile& tile, const Crossings& crossings, Refined& result,
              std::vector<Unclear>& unclear, Work& work, RunStatus& status) const;
+  std::uint32_t count() const { return static_cast<std::uint32_t>(options_.samples); }
   template <class Visit>
   void sample(const std::vector<Pixel>& pixels, std::uint32_t first, std::uint32_t last, Work& work,
               RunStatus& status, const Visit& visit) const;
   bool by_regions(const Unclear& pixel, std::uint32_t look, const Results& results, std::size_t at,
                   std::span<float> values) const;
+  void glance(const std::vector<Pixel>& narrow, std::vector<Unclear>& unclear, Work& work,
+              RunStatus& status) const;
   void settle(const std::vector<Unclear>& unclear, Refined& result, Work& work,
               RunStatus& status) const;
 

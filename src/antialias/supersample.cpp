@@ -11,7 +11,9 @@ namespace pse::antialias {
 namespace {
 
 // Places handed to the program at once.
-constexpr std::size_t most_places = 1 << 12;
+constexpr std::size_t most_places = 1 << 10;
+// So many samples tell whether there is anything in a narrow pixel.
+constexpr std::uint32_t first_glance = 8;
 // So many samples tell whether a pixel needs the others: where they spread over less than
 // mean_per_range times what can be seen, their mean is near enough.
 constexpr std::uint32_t first_look = 16;
@@ -56,6 +58,12 @@ Range range_of(std::span<const float> values) {
   return range;
 }
 
+// Whether what is spread over them can be seen in their mean.
+bool is_uneven(std::span<const float> values) {
+  const auto [low, high] = range_of(values);
+  return differ(low, low + (high - low) / mean_per_range);
+}
+
 }  // namespace
 
 // Runs the samples [first, last) of each pixel; `visit` gets the pixel's number and where its
@@ -85,7 +93,7 @@ void Refiner::sample(const std::vector<Pixel>& pixels, std::uint32_t first, std:
 }
 
 Refined Refiner::supersample(std::vector<Pixel> pixels, Work& work, RunStatus& status) const {
-  const auto count = static_cast<std::uint32_t>(options_.samples);
+  const std::uint32_t count = this->count();
   Refined all(std::move(pixels), outputs_);
   sample(all.pixels, 0, count, work, status,
          [&](std::size_t i, const Results& results, std::size_t at) {
@@ -134,12 +142,25 @@ bool Refiner::by_regions(const Unclear& pixel, std::uint32_t look, const Results
   return true;
 }
 
+// Narrow pixels that look uneven join `unclear`; the others stay as they are.
+void Refiner::glance(const std::vector<Pixel>& narrow, std::vector<Unclear>& unclear, Work& work,
+                     RunStatus& status) const {
+  sample(narrow, 0, std::min<std::uint32_t>(first_glance, count()), work, status,
+         [&](std::size_t i, const Results& results, std::size_t at) {
+           for (std::size_t o = 0; o < outputs_; ++o)
+             if (is_uneven({results[o] + at, std::min<std::size_t>(first_glance, count())})) {
+               unclear.push_back({narrow[i]});
+               return;
+             }
+         });
+}
+
 // Pixels that turn out even after a first look are left at that, and those whose samples confirm
 // two edges are put together from their regions.
 void Refiner::settle(const std::vector<Unclear>& unclear, Refined& result, Work& work,
                      RunStatus& status) const {
   if (unclear.empty()) return;
-  const auto count = static_cast<std::uint32_t>(options_.samples);
+  const std::uint32_t count = this->count();
   const std::uint32_t look = std::min(first_look, count);
   const std::size_t start = result.pixels.size();
   for (const Unclear& pixel : unclear) result.pixels.push_back(pixel.pixel);
@@ -151,14 +172,13 @@ void Refiner::settle(const std::vector<Unclear>& unclear, Refined& result, Work&
   std::vector<std::size_t> places;  // of these in the result, with the sums of the first look
   std::vector<float> values(outputs_);
   sample(pixels, 0, look, work, status, [&](std::size_t i, const Results& results, std::size_t at) {
-    bool is_uneven = false;
+    bool unsettled = false;
     for (std::size_t o = 0; o < outputs_; ++o) {
       const std::span<const float> seen(results[o] + at, look);
-      const auto [low, high] = range_of(seen);
       result.values[o][start + i] = sum_of(seen);
-      is_uneven = is_uneven || differ(low, low + (high - low) / mean_per_range);
+      unsettled = unsettled || is_uneven(seen);
     }
-    if (is_uneven && look < count) {
+    if (unsettled && look < count) {
       if (!by_regions(unclear[i], look, results, at, values)) {
         more.push_back(pixels[i]);
         places.push_back(start + i);

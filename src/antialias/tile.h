@@ -27,8 +27,8 @@ struct Tile {
 struct Pixel {
   int x = 0, y = 0;
   bool silhouette = false;  // a neighbour shows another object
-  // Nothing jumps, but both neighbours to the sides, or above and below, take other ways: more may
-  // be in between than a sample for each pixel shows.
+  // Nothing jumps, but more than one decision falls differently a pixel further: there may be
+  // something in between that no sample has met.
   bool narrow = false;
 };
 

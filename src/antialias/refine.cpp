@@ -244,7 +244,7 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
     else
       (pixel.narrow ? narrow : inner).push_back(pixel);
   }
-  if (!narrow.empty()) glance(narrow, unclear, work, status);
+  if (!narrow.empty()) glance(tile, narrow, unclear, work, status);
   if (!inner.empty()) {
     Crossings crossings = find_crossings(inner, unclear, work, status);
     follow(crossings, unclear, work, status);

@@ -75,8 +75,8 @@ class Refiner {
               RunStatus& status, const Visit& visit) const;
   bool by_regions(const Unclear& pixel, std::uint32_t look, const Results& results, std::size_t at,
                   std::span<float> values) const;
-  void glance(const std::vector<Pixel>& narrow, std::vector<Unclear>& unclear, Work& work,
-              RunStatus& status) const;
+  void glance(const Tile& tile, const std::vector<Pixel>& narrow, std::vector<Unclear>& unclear,
+              Work& work, RunStatus& status) const;
   void settle(const std::vector<Unclear>& unclear, Refined& result, Work& work,
               RunStatus& status) const;
 

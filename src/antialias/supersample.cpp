@@ -142,17 +142,27 @@ bool Refiner::by_regions(const Unclear& pixel, std::uint32_t look, const Results
   return true;
 }
 
-// Narrow pixels that look uneven join `unclear`; the others stay as they are.
-void Refiner::glance(const std::vector<Pixel>& narrow, std::vector<Unclear>& unclear, Work& work,
-                     RunStatus& status) const {
-  sample(narrow, 0, std::min<std::uint32_t>(first_glance, count()), work, status,
-         [&](std::size_t i, const Results& results, std::size_t at) {
-           for (std::size_t o = 0; o < outputs_; ++o)
-             if (is_uneven({results[o] + at, std::min<std::size_t>(first_glance, count())})) {
-               unclear.push_back({narrow[i]});
-               return;
-             }
-         });
+// Narrow pixels join `unclear` where a few samples show what none of the pixels around does; the
+// others stay as they are.
+void Refiner::glance(const Tile& tile, const std::vector<Pixel>& narrow,
+                     std::vector<Unclear>& unclear, Work& work, RunStatus& status) const {
+  const std::uint32_t few = std::min(first_glance, count());
+  sample(narrow, 0, few, work, status, [&](std::size_t i, const Results& results, std::size_t at) {
+    for (std::size_t o = 0; o < outputs_; ++o) {
+      const float* middle = tile.planes[o] + tile.at(narrow[i].x, narrow[i].y);
+      Range around = range_of({middle - 1, 3});
+      for (const std::ptrdiff_t row : {-tile.area.width(), tile.area.width()}) {
+        const auto [low, high] = range_of({middle + row - 1, 3});
+        around = {smaller(low, around.low), larger(high, around.high)};
+      }
+      const auto [low, high] = range_of({results[o] + at, few});
+      if ((low < around.low && differ(low, around.low)) ||
+          (high > around.high && differ(high, around.high))) {
+        unclear.push_back({narrow[i]});
+        return;
+      }
+    }
+  });
 }
 
 // Pixels that turn out even after a first look are left at that, and those whose samples confirm

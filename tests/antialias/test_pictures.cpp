@@ -85,6 +85,9 @@ const std::vector<std::pair<const char*, const char*>> programs = {
     {"array", "a = array(4)\nfor i in [1 .. 4]\n    a[i] = length([x - i / 3 + 0.8 y - 0.1])\nc = 0\n"
               "for d in a\n    if d < 0.25\n        c += 0.3\n"},
     {"noise", "c = 0.2\nif Noise(3 * x, 3 * y) > 0.1 and x + y < 0.8\n    c = 1\n"},
+    // Towards the horizon whole squares lie between two samples.
+    {"horizon", "h = 0.35 - y\nc = 0.5\nif h > 0\n    d = 0.5 / h\n    s = floor(0.9 * x * d + 0.4 * d) + "
+                "floor(0.9 * d - 0.4 * x * d)\n    c = mix(mod(s, 2), 0.5, 1 - exp(-0.04 * d))\n"},
     {"pow", "c = select(pow(abs(x), 2.5) + pow(abs(y), 2.5) < 0.5, 1, 0)\n"},
 };
 
@@ -137,6 +140,22 @@ TEST(Pictures, WhatHasNoEdgesIsLeftAlone) {
     EXPECT_EQ(ours.planes, none.planes) << program;
     EXPECT_EQ(ours.counts.blended + ours.counts.supersampled, 0) << program;
   }
+}
+
+// Two stripes in each pixel, and every middle is on a white one.
+TEST(Pictures, WhatLiesBetweenTheSamplesIsSeen) {
+  const std::string stripes = axes(16) + "c = mod(floor(2 * _y + 0.25), 2)\n";
+  const PictureOptions size{.width = 16, .height = 16};
+  PictureOptions none = size, ours = size;
+  none.antialias = plain(), ours.antialias = procedural();
+  const Picture white = render(stripes, none), grey = render(stripes, ours);
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 16; ++x) {
+      ASSERT_EQ(white.at(x, y), 1);
+      // From -1/2 to -1/8 and from 3/8 to 1/2 the pixel is black.
+      const float black = Filter().share(-0.125f, 0, 1) + 1 - Filter().share(0.375f, 0, 1);
+      EXPECT_NEAR(grey.at(x, y), 1 - black, 0.06) << x << ' ' << y;  // of 32 samples, two
+    }
 }
 
 TEST(Pictures, EdgesAtThePicturesBorderAreSeen) {

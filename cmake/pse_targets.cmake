@@ -2,7 +2,8 @@
 
 find_program(CCACHE ccache)
 if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  # The cache may keep what was compiled with precompiled headers.
+  set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
 endif()
 
 # Settings that every target shares. Floating point means what the source says: no contraction, no fast-math.
@@ -23,7 +24,23 @@ if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
 endif()
 if(PSE_SANITIZE)
   target_compile_options(pse_settings INTERFACE -fsanitize=${PSE_SANITIZE} -fno-omit-frame-pointer)
+  if(PSE_NO_SANITIZE)
+    target_compile_options(pse_settings INTERFACE -fno-sanitize=${PSE_NO_SANITIZE})
+  endif()
   target_link_options(pse_settings INTERFACE -fsanitize=${PSE_SANITIZE})
+endif()
+
+# Half of what the compiler reads of a small file is the standard library: read once for the library, and once with
+# GoogleTest for the tests. Sources name what they include all the same; the fuzz targets are built without this.
+function(pse_precompile name)
+  add_library(${name} OBJECT ${CMAKE_SOURCE_DIR}/cmake/precompiled.cpp)
+  target_link_libraries(${name} PRIVATE pse_settings)
+  target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+  target_precompile_headers(${name} PRIVATE ${ARGN} <algorithm> <array> <cmath> <expected> <functional>
+                            <map> <memory> <optional> <span> <sstream> <string> <vector>)
+endfunction()
+if(PSE_PRECOMPILE)
+  pse_precompile(pse_precompiled)
 endif()
 
 # pse_folder(name [USES folder...] [LINKS target...]): the static library pse_<name> of all .cpp files here.
@@ -39,6 +56,10 @@ function(pse_folder name)
     set(scope INTERFACE)
   endif()
   target_link_libraries(pse_${name} ${scope} pse_settings)
+  if(PSE_PRECOMPILE AND sources)
+    target_compile_options(pse_${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+    target_precompile_headers(pse_${name} REUSE_FROM pse_precompiled)
+  endif()
   foreach(used ${arg_USES})
     target_link_libraries(pse_${name} ${scope} pse_${used})
   endforeach()
@@ -64,5 +85,13 @@ function(pse_tests name)
     target_link_libraries(test_${name} PRIVATE pse_${used})
   endforeach()
   target_compile_definitions(test_${name} PRIVATE PSE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  if(PSE_PRECOMPILE)
+    if(NOT TARGET pse_precompiled_tests)
+      pse_precompile(pse_precompiled_tests <gtest/gtest.h>)
+      target_link_libraries(pse_precompiled_tests PRIVATE GTest::gtest_main)
+    endif()
+    target_compile_options(test_${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+    target_precompile_headers(test_${name} REUSE_FROM pse_precompiled_tests)
+  endif()
   add_test(NAME ${name} COMMAND test_${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 endfunction()

@@ -176,8 +176,8 @@ float Filter::edge_moment(float distance, float nx, float ny) const {
   return (high * high * high - low * low * low) / 3 * scale_;
 }
 
-void Filter::measure(std::span<const float> d, std::span<const float> nx,
-                     std::span<const float> ny, const Measures& measures) const {
+void Filter::measure(std::span<const float> d, std::span<const float> nx, std::span<const float> ny,
+                     const Measures& measures) const {
   const auto& [shares, moments, edge_moments] = measures;
   if (kind_ == FilterKind::cubic) {
     for (std::size_t i = 0; i < d.size(); i += four) {

@@ -1,7 +1,8 @@
 // The comparing of neighbours (tile.h) itself, for the instructions that the including file is
 // compiled for: neighbours.cpp and neighbours_avx2.cpp. Paths first, for whole rows at once, then
-// values where paths differ, for eight pixels at once. Nothing here may be kept out of line but what
-// is local, since the linker would take one such function for both; hence no standard containers.
+// values where paths differ, for eight pixels at once. Nothing here may be kept out of line but
+// what is local, since the linker would take one such function for both; hence no standard
+// containers.
 #pragma once
 
 #include "antialias/lanes.h"
@@ -159,8 +160,8 @@ class Search {
     for (std::size_t o = 0; o < tile_.outputs; ++o) {
       const float* at = tile_.planes[o] + here;
       const Eight value = load<Eight>(at);
-      const Jumps found = jumps(value, load<Eight>(at + step), load<Eight>(at - step),
-                                least_step_from(value));
+      const Jumps found =
+          jumps(value, load<Eight>(at + step), load<Eight>(at - step), least_step_from(value));
       jumps_ahead |= ahead & found.ahead;
       jumps_back |= back & found.back;
     }

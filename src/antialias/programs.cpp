@@ -39,9 +39,8 @@ std::expected<Programs, std::string> compile_programs(CompiledFront front,
   const Decisions decisions = find_decisions(copy.module);
   if (!decisions.any) return finish(std::move(front));
   programs.has_paths = true;
-  const CompileOptions plain{.codegen = options.codegen,
-                             .interpret = options.interpret,
-                             .optimize = options.optimize};
+  const CompileOptions plain{
+      .codegen = options.codegen, .interpret = options.interpret, .optimize = options.optimize};
   programs.conditions = std::async(std::launch::deferred, [open = copy, plain]() mutable {
                           const std::size_t own = open.module.outputs.size();
                           remove_checks(open.module);

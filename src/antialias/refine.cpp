@@ -11,7 +11,8 @@
 namespace pse::antialias {
 
 // Pixels with one edge under their kernels: numbers i of all lists belong together. The lists of
-// numbers are as long as the next multiple of four says; what lies behind the pixels has no meaning.
+// numbers are as long as the next multiple of four says; what lies behind the pixels has no
+// meaning.
 struct Refiner::Crossings {
   std::vector<Pixel> pixels;
   // Of the centre from the edge, positive on the side the normal points to.
@@ -73,7 +74,8 @@ Four true_distance(Four first, Four second, Four out, Four& bend, float s) {
     beside = second + b * beside * beside;
   }
   // Both say the same of a straight edge.
-  const AnswersOf<Four> is_straight = (size(measured) < unseen) & (size(second - out - first) < unseen);
+  const AnswersOf<Four> is_straight =
+      (size(measured) < unseen) & (size(second - out - first) < unseen);
   bend = choose(is_straight, measured, bend);
   return choose(is_straight, first, x);
 }
@@ -143,8 +145,10 @@ void Refiner::follow(Crossings& crossings, std::vector<Unclear>& unclear, Work& 
     const Four beside = load<Four>(edges[0] + i) * turned;
     // The other line's distance from the pixel.
     const Four dx = s * ny - out * nx, dy = -(s * nx) - out * ny;
-    const Four other = load<Four>(edges[3] + i) + load<Four>(edges[4] + i) * dx + load<Four>(edges[5] + i) * dy;
-    const AnswersOf<Four> one = (size(turn) < most_turn) & (size(beside) < reach) & ~(size(other) < reach);
+    const Four other =
+        load<Four>(edges[3] + i) + load<Four>(edges[4] + i) * dx + load<Four>(edges[5] + i) * dy;
+    const AnswersOf<Four> one =
+        (size(turn) < most_turn) & (size(beside) < reach) & ~(size(other) < reach);
     Four bend = turn / s;
     store(&crossings.distance[i], true_distance(first, beside / size(cosine), out, bend, s));
     store(&crossings.bend[i], bend);
@@ -197,7 +201,8 @@ void Refiner::blend(const Tile& tile, const Crossings& crossings, Refined& resul
     const double x = centre(crossings.pixels[i].x), y = centre(crossings.pixels[i].y);
     for (std::size_t side = 0; side < 2; ++side) {
       const float by = side == 0 ? crossings.towards[i] : crossings.away[i];
-      places.x[2 * i + side] = x + double(by * c.nx), places.y[2 * i + side] = y + double(by * c.ny);
+      places.x[2 * i + side] = x + double(by * c.nx),
+                       places.y[2 * i + side] = y + double(by * c.ny);
     }
   }
   const Results& sides = program_.run(work, status);

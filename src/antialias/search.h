@@ -1,4 +1,5 @@
-// The two searches for edge pixels that tile.cpp chooses from: the same, for different instructions.
+// The two searches for edge pixels that tile.cpp chooses from: the same, for different
+// instructions.
 #pragma once
 
 #include "antialias/tile.h"

@@ -201,13 +201,13 @@ void Refiner::settle(const std::vector<Unclear>& unclear, Refined& result, Work&
     }
   });
   if (more.empty()) return;
-  sample(
-      more, look, count, work, status, [&](std::size_t i, const Results& results, std::size_t at) {
-        for (std::size_t o = 0; o < outputs_; ++o) {
-          float& value = result.values[o][places[i]];
-          value = (value + sum_of({results[o] + at, count - look})) / static_cast<float>(count);
-        }
-      });
+  sample(more, look, count, work, status,
+         [&](std::size_t i, const Results& results, std::size_t at) {
+           for (std::size_t o = 0; o < outputs_; ++o) {
+             float& value = result.values[o][places[i]];
+             value = (value + sum_of({results[o] + at, count - look})) / static_cast<float>(count);
+           }
+         });
 }
 
 }  // namespace pse::antialias

@@ -1,0 +1,1 @@
+// Nothing: what is compiled with this file are the precompiled headers (pse_targets.cmake).

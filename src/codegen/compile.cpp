@@ -12,6 +12,7 @@
 #include "codegen/backend.h"
 #include "codegen/code_object.h"
 #include "codegen/compiled_kernel.h"
+#include "codegen/first/first_kernel.h"
 #include "codegen/frame_code.h"
 #include "codegen/kernel_cache.h"
 #include "codegen/module_hash.h"
@@ -132,7 +133,29 @@ std::expected<Made, std::string> code_of(const BackendRequest& request, const Ke
   return Made{std::move(*code), false, behind};
 }
 
+std::unique_ptr<const FrameCode> frame_code(const BackendRequest& request,
+                                            const KernelCache& cache, bool at_once) {
+  const auto compile =
+      [cache, request](const passes::SplitModule& part) -> std::optional<CodeObject> {
+    BackendRequest mine = request;
+    mine.split = &part;
+    mine.part = BackendPart::frame;
+    auto code = code_of(mine, cache);
+    if (!code) return std::nullopt;
+    return std::move(code->code);
+  };
+  return std::make_unique<const FrameCode>(*request.split, compile, at_once);
+}
+
 }  // namespace
+
+std::expected<std::unique_ptr<Kernel>, std::string> make_first_kernel(
+    const passes::SplitModule& split, const CodegenOptions& options) {
+  const auto request = make_request(split, options);
+  if (!request) return std::unexpected(request.error());
+  return first_kernel(split,
+                      frame_code(*request, KernelCache(options.cache), options.compile_frame));
+}
 
 std::expected<std::unique_ptr<Kernel>, std::string> compile_kernel(const passes::SplitModule& split,
                                                                    const CodegenOptions& options,
@@ -148,18 +171,9 @@ std::expected<std::unique_ptr<Kernel>, std::string> compile_kernel(const passes:
   auto made = code_of(*request, cache);
   if (!made) return std::unexpected(made.error());
 
-  const auto compile_frame =
-      [cache, frame = *request](const passes::SplitModule& part) -> std::optional<CodeObject> {
-    BackendRequest mine = frame;
-    mine.split = &part;
-    mine.part = BackendPart::frame;
-    auto code = code_of(mine, cache);
-    if (!code) return std::nullopt;
-    return std::move(code->code);
-  };
   std::unique_ptr<Kernel> kernel = CompiledKernel::make(
       split, std::move(made->code), request->width,
-      std::make_unique<const FrameCode>(split, compile_frame, options.compile_frame));
+      frame_code(*request, cache, options.compile_frame));
   if (!kernel) return std::unexpected(std::string("the compiled code cannot be loaded"));
   if (stats) {
     stats->seconds =

@@ -102,6 +102,12 @@ std::expected<std::unique_ptr<Kernel>, std::string> compile_kernel(const passes:
                                                                    const CodegenOptions& options,
                                                                    CodegenStats* stats = nullptr);
 
+// The first tier (first/kernel_code.h): native code within a millisecond or two, of about half the
+// speed, and the same bits. The error says why there is none for this program or this processor: no
+// error of the user's. Of the options only the frame function's matter.
+std::expected<std::unique_ptr<Kernel>, std::string> make_first_kernel(
+    const passes::SplitModule& split, const CodegenOptions& options);
+
 // `--emit llvm` and `--emit asm`.
 enum class Listing { llvm, assembly };
 std::expected<std::string, std::string> emit_listing(const passes::SplitModule& split,

@@ -11,7 +11,7 @@ bool has_first_tier() {
   return target != nullptr && target->avx2;
 }
 
-std::expected<std::unique_ptr<Kernel>, std::string> make_first_kernel(
+std::expected<std::unique_ptr<Kernel>, std::string> first_kernel(
     const passes::SplitModule& split, std::unique_ptr<const FrameCode> frame) {
   if (!has_first_tier()) return std::unexpected(std::string("a processor without AVX2"));
   auto code = first::write_kernel(split);

@@ -16,7 +16,7 @@ bool has_first_tier();
 
 // `frame` runs the frame function. The error says why there is no first tier for this program or
 // this processor; it is no error of the user's.
-std::expected<std::unique_ptr<Kernel>, std::string> make_first_kernel(
+std::expected<std::unique_ptr<Kernel>, std::string> first_kernel(
     const passes::SplitModule& split, std::unique_ptr<const FrameCode> frame);
 
 }  // namespace pse

@@ -14,6 +14,7 @@ struct RunStats {
   OperationCounts operations;
   int width = 0, threads = 0;  // vector width; threads used
   int frames = 0;
+  TierRuns tier_runs;           // batches of samples by the code that computed them
   antialias::Counts antialias;  // pixels, of all frames
   double samples = 0;
   double compute_seconds =

@@ -43,8 +43,8 @@ void CompiledKernel::run_frame(FrameState& state, RunStatus& status) const {
 void CompiledKernel::run_samples(const FrameState& state, RunStatus& status, Scratch& scratch,
                                  const float* const* inputs, float* const* outputs,
                                  std::int64_t count) const {
-  // Scratch: the arrays of a vector of samples, what the code wants for itself, then buffers for the
-  // last, partly filled vector.
+  // Scratch: the arrays of a vector of samples, what the code wants for itself, then buffers for
+  // the last, partly filled vector.
   const auto width = static_cast<std::size_t>(width_);
   const auto arrays = static_cast<std::size_t>(sample_layout_.size) + own_floats_;
   const std::size_t needed = arrays + width * (is_sample_input_.size() + output_count_) + 16;

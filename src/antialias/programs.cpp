@@ -68,10 +68,10 @@ std::expected<Programs, std::string> compile_programs(CompiledFront front,
   return finish(std::move(copy));
 }
 
-TierRuns tier_runs(const Programs& programs) {
-  TierRuns sum;
+TierSamples tier_samples(const Programs& programs) {
+  TierSamples sum;
   const auto add = [&](const std::shared_ptr<const Program>& program) {
-    const TierRuns runs = program->kernel->tier_runs();
+    const TierSamples runs = program->kernel->tier_samples();
     sum.first += runs.first;
     sum.optimised += runs.optimised;
   };

@@ -43,6 +43,6 @@ std::expected<Programs, std::string> compile_programs(
     const InputChanges& changes = unknown_changes);
 
 // What the kernels of all of them say.
-TierRuns tier_runs(const Programs& programs);
+TierSamples tier_samples(const Programs& programs);
 
 }  // namespace pse::antialias

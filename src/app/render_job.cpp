@@ -103,7 +103,7 @@ Exit RenderJob::run() {
     exit = run_frame(static_cast<int>(i), frames_[i]);
   progress_.finish();
   if (exit == Exit::ok) close_films();
-  stats_.tier_runs = antialias::tier_runs(programs_);
+  stats_.tier_samples = antialias::tier_samples(programs_);
   stats_.width = program_->kernel->width();
   return exit;
 }

@@ -56,9 +56,9 @@ std::string stats_text(const RunStats& s) {
   if (s.antialias.left > 0)
     out += fmt::format("              {} left as they are: stored pixels tell no more of their edges\n",
                        pixels(s.antialias.left));
-  if (s.tier_runs.first > 0)
-    out += fmt::format("code          {} batches of samples by the first tier, {} by the optimised code\n",
-                       s.tier_runs.first, s.tier_runs.optimised);
+  if (s.tier_samples.first > 0)
+    out += fmt::format("code          {} samples by the first tier, {} by the optimised code\n",
+                       s.tier_samples.first, s.tier_samples.optimised);
   if (s.compute_seconds > 0)
     out += fmt::format("speed         {:.2f} million samples per second, {:.1f} ns each\n",
                        s.samples / s.compute_seconds * 1e-6,
@@ -79,7 +79,7 @@ std::string stats_json(const RunStats& s) {
         {"codegen", s.compile.codegen},
         {"from_cache", s.compile.from_cache},
         {"first_tier", s.compile.first_tier}}},
-      {"batches", {{"first_tier", s.tier_runs.first}, {"optimised", s.tier_runs.optimised}}},
+      {"samples_by_tier", {{"first_tier", s.tier_samples.first}, {"optimised", s.tier_samples.optimised}}},
       {"operations",
        {{"written",
          {{"constant", s.operations.written[0]},

@@ -51,8 +51,8 @@ struct Scratch {
   std::vector<float> memory;
 };
 
-// Calls of Kernel::run_samples by who answered them.
-struct TierRuns {
+// Samples by the code that computed them.
+struct TierSamples {
   std::int64_t first = 0, optimised = 0;
 };
 
@@ -72,7 +72,7 @@ class Kernel {
                            const float* const* inputs, float* const* outputs,
                            std::int64_t count) const = 0;
   // So far; nothing where there are no tiers.
-  virtual TierRuns tier_runs() const { return {}; }
+  virtual TierSamples tier_samples() const { return {}; }
 };
 
 // The IR interpreter behind the same interface (width 1): the meaning that every kernel is tested
@@ -118,8 +118,8 @@ std::expected<std::unique_ptr<Kernel>, std::string> make_first_kernel(
 
 // Which of the two. automatic: LLVM's kernel if the cache has it; else the first tier, and once
 // that has worked for as long as LLVM takes, LLVM's is compiled behind the back of whoever runs the
-// kernel, and takes its place between two calls of run_samples. Where there is no first tier all
-// are `optimised`.
+// kernel, and takes its place between two pieces of a call of run_samples. Where there is no first
+// tier all are `optimised`.
 enum class Tier : std::uint8_t { automatic, first, optimised };
 std::expected<std::unique_ptr<Kernel>, std::string> make_kernel(
     std::shared_ptr<const passes::SplitModule> split, const CodegenOptions& options, Tier tier,

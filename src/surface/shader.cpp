@@ -138,10 +138,10 @@ void Shader::begin_frame(std::vector<FrameState> states) {
 
 int Shader::width() const { return parts_.empty() ? 1 : parts_.front().program->kernel->width(); }
 
-TierRuns Shader::tier_runs() const {
-  TierRuns sum;
+TierSamples Shader::tier_samples() const {
+  TierSamples sum;
   for (const Part& part : parts_) {
-    const TierRuns runs = part.program->kernel->tier_runs();
+    const TierSamples runs = part.program->kernel->tier_samples();
     sum.first += runs.first;
     sum.optimised += runs.optimised;
   }

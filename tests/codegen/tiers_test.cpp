@@ -67,8 +67,8 @@ TEST_F(Tiers, TheFirstAloneStaysAlone) {
   ASSERT_TRUE(kernel);
   EXPECT_TRUE(stats.first_tier);
   for (int i = 0; i < 20; ++i) run_once(**kernel);
-  EXPECT_EQ((*kernel)->tier_runs().first, 20);
-  EXPECT_EQ((*kernel)->tier_runs().optimised, 0);
+  EXPECT_EQ((*kernel)->tier_samples().first, 20 * 1024);
+  EXPECT_EQ((*kernel)->tier_samples().optimised, 0);
   EXPECT_FALSE(compiles_behind());
 }
 
@@ -76,12 +76,12 @@ TEST_F(Tiers, LlvmTakesOverWhenTheFirstHasWorkedForLong) {
   const auto kernel = make_kernel(split_, options_, Tier::automatic);
   ASSERT_TRUE(kernel);
   // It is bound to come, however slow the machine is.
-  while ((*kernel)->tier_runs().optimised == 0) run_once(**kernel);
-  const TierRuns runs = (*kernel)->tier_runs();
+  while ((*kernel)->tier_samples().optimised == 0) run_once(**kernel);
+  const TierSamples runs = (*kernel)->tier_samples();
   EXPECT_GT(runs.first, 0);
   run_once(**kernel);
-  EXPECT_EQ((*kernel)->tier_runs().first, runs.first);
-  EXPECT_EQ((*kernel)->tier_runs().optimised, runs.optimised + 1);
+  EXPECT_EQ((*kernel)->tier_samples().first, runs.first);
+  EXPECT_EQ((*kernel)->tier_samples().optimised, runs.optimised + 1024);
 }
 
 TEST_F(Tiers, WhatIsCachedComesAtOnce) {
@@ -92,14 +92,14 @@ TEST_F(Tiers, WhatIsCachedComesAtOnce) {
   EXPECT_TRUE(stats.from_cache);
   EXPECT_FALSE(stats.first_tier);
   run_once(**kernel);
-  EXPECT_EQ((*kernel)->tier_runs().first, 0);
+  EXPECT_EQ((*kernel)->tier_samples().first, 0);
 }
 
 TEST_F(Tiers, LlvmsKernelIsKeptForTheNextRun) {
   {
     const auto kernel = make_kernel(split_, options_, Tier::automatic);
     ASSERT_TRUE(kernel);
-    while ((*kernel)->tier_runs().optimised == 0) run_once(**kernel);
+    while ((*kernel)->tier_samples().optimised == 0) run_once(**kernel);
   }
   CodegenStats stats;
   ASSERT_TRUE(make_kernel(split_, options_, Tier::automatic, &stats));
@@ -110,7 +110,7 @@ TEST_F(Tiers, AKernelMayGoWhileLlvmStillCompilesForIt) {
   for (int i = 0; i < 3; ++i) {
     const auto kernel = make_kernel(split_, options_, Tier::automatic);
     ASSERT_TRUE(kernel);
-    while (!compiles_behind() && (*kernel)->tier_runs().optimised == 0) run_once(**kernel);
+    while (!compiles_behind() && (*kernel)->tier_samples().optimised == 0) run_once(**kernel);
   }
   while (compiles_behind()) std::this_thread::yield();
 }

@@ -129,6 +129,21 @@ TEST(Assembler, WritesTheBytesOfTheManual) {
          c.store32({r12, 72}, 3);
        },
        {0x41, 0xc7, 0x44, 0x24, 0x48, 0x03, 0x00, 0x00, 0x00}},
+      {"mov r10d, [rbx+rax*4+32]",
+       [](auto& c) {
+         c.load32(r10, {rbx, 32, 0});
+       },
+       {0x44, 0x8b, 0x54, 0x83, 0x20}},
+      {"cmp r10d, [rax+8]",
+       [](auto& c) {
+         c.compare32(r10, {rax, 8});
+       },
+       {0x44, 0x3b, 0x50, 0x08}},
+      {"vbroadcastss ymm1, [rax+r10*4+64]",
+       [](auto& c) {
+         c.vector(op::broadcast, 1, 0, Memory{rax, 64, 10});
+       },
+       {0xc4, 0xa2, 0x7d, 0x18, 0x4c, 0x90, 0x40}},
       {"lea rsi, [rbx+64]",
        [](auto& c) {
          c.address(rsi, {rbx, 64});

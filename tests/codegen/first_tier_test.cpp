@@ -137,5 +137,41 @@ TEST_F(FirstTier, ValuesFromOutsideLastThroughALoop) {
     EXPECT_EQ(out[0][s], static_cast<float>(s) * (static_cast<float>(s) + 1.5f));
 }
 
+// Only lanes that both branches let in: what the inner one asks the host for is counted.
+TEST_F(FirstTier, ABranchWithinABranchKeepsToItsLanes) {
+  TestProgram program;
+  ir::Builder& b = program.build;
+  program.split.module.externals = {{"seen", 1, 1}};
+  const ir::Value x = program.input(), y = program.input(), zero = b.const_f32(0);
+  ir::Region inner, outer, nothing, none;
+  const ir::Value outside = b.emit(Op::flt, {zero, x}), inside = b.emit(Op::flt, {zero, y});
+  b.begin_region(outer);
+  b.begin_region(inner);
+  const ir::Value seen = b.emit_multi(Op::external, std::vector<ir::Value>{x},
+                                      std::vector<ir::Type>{ir::Type::f32}, 0)[0];
+  b.end_region();
+  inner.yields = {seen};
+  none.yields = nothing.yields = {zero};
+  outer.yields = {b.emit_if(inside, std::move(inner), std::move(none))[0]};
+  b.end_region();
+  program.output(b.emit_if(outside, std::move(outer), std::move(nothing))[0]);
+  program.finish();
+  const auto kernel = compile(program, first);
+  ASSERT_TRUE(kernel);
+  std::vector<float> asked;
+  Runner once;
+  once.state.externals = {
+      {[](void* user, std::int64_t count, const float* const* in, float* const* out) {
+         auto& list = *static_cast<std::vector<float>*>(user);
+         list.insert(list.end(), in[0], in[0] + count);
+         for (std::int64_t i = 0; i < count; ++i) out[0][i] = 2 * in[0][i];
+       },
+       &asked}};
+  const Columns out = once(*kernel, program.split.module, {0, 0},
+                           {{1, -2, 3, 4, -5, 6, 7, 8}, {1, 1, -1, 1, 1, -1, -1, 1}}, 8);
+  EXPECT_EQ(asked, (std::vector<float>{1, 4, 8}));
+  EXPECT_EQ(out[0], (std::vector<float>{2, 0, 0, 8, 0, 0, 0, 16}));
+}
+
 }  // namespace
 }  // namespace pse::testing_support

@@ -79,16 +79,18 @@ void Assembler::rex(bool wide, int reg, int rm, int index) {
   if (bits != 0) byte(0x40 | bits);
 }
 
-void Assembler::general(int opcode, int reg, const Memory& m) {
-  rex(true, reg, number(m.base), m.index >= 0 ? m.index : 0);
+void Assembler::general(bool wide, int opcode, int reg, const Memory& m) {
+  rex(wide, reg, number(m.base), m.index >= 0 ? m.index : 0);
   byte(opcode);
   modrm(reg, m);
 }
 
-void Assembler::load(Gpr to, const Memory& from) { general(0x8b, number(to), from); }
-void Assembler::store(const Memory& to, Gpr from) { general(0x89, number(from), to); }
-void Assembler::address(Gpr to, const Memory& of) { general(0x8d, number(to), of); }
-void Assembler::compare(Gpr a, const Memory& b) { general(0x3b, number(a), b); }
+void Assembler::load(Gpr to, const Memory& from) { general(true, 0x8b, number(to), from); }
+void Assembler::load32(Gpr to, const Memory& from) { general(false, 0x8b, number(to), from); }
+void Assembler::compare32(Gpr a, const Memory& b) { general(false, 0x3b, number(a), b); }
+void Assembler::store(const Memory& to, Gpr from) { general(true, 0x89, number(from), to); }
+void Assembler::address(Gpr to, const Memory& of) { general(true, 0x8d, number(to), of); }
+void Assembler::compare(Gpr a, const Memory& b) { general(true, 0x3b, number(a), b); }
 
 void Assembler::store32(const Memory& to, std::int32_t value) {
   rex(false, 0, number(to.base));
@@ -154,13 +156,6 @@ void Assembler::test32(Gpr a) {
   rex(false, number(a), number(a));
   byte(0x85);
   byte(3 << 6 | (number(a) & 7) << 3 | (number(a) & 7));
-}
-
-void Assembler::compare32(Gpr a, std::int8_t with) {
-  rex(false, 0, number(a));
-  byte(0x83);
-  byte(3 << 6 | 7 << 3 | (number(a) & 7));
-  byte(with & 255);
 }
 
 void Assembler::lowest_bit(Gpr to, Gpr from) {

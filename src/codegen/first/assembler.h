@@ -96,7 +96,8 @@ class Assembler {
   void mask_bits(Gpr to, Ymm from) { vector(op::mask_bits, static_cast<int>(to), 0, from); }
   void zero_upper();
 
-  void load(Gpr to, const Memory& from);   // 64 bits
+  void load(Gpr to, const Memory& from);  // 64 bits
+  void load32(Gpr to, const Memory& from);
   void store(const Memory& to, Gpr from);  // 64 bits
   void store32(const Memory& to, std::int32_t value);
   void address(Gpr to, const Memory& of);
@@ -109,16 +110,16 @@ class Assembler {
   void add(Gpr to, Gpr other);
   void add(Gpr to, std::int32_t value);
   void compare(Gpr a, const Memory& b);
+  void compare32(Gpr a, const Memory& b);
   void compare_byte(const Memory& a, std::int8_t with);
   void test32(Gpr a);
-  void compare32(Gpr a, std::int8_t with);
   void lowest_bit(Gpr to, Gpr from);  // its number; `from` is not 0
   void fill_dwords();                 // rep stosd: rcx times eax at rdi
   void push(Gpr reg);
   void pop(Gpr reg);
   void ret() { byte(0xc3); }
 
-  enum class When : std::uint8_t { equal = 4, not_equal = 5, less = 12, not_less = 13 };
+  enum class When : std::uint8_t { not_below = 3, equal = 4, not_equal = 5, not_less = 13 };
   void jump(Label& to);
   void jump(When when, Label& to);
   void call(Label& to);
@@ -131,7 +132,7 @@ class Assembler {
   void word(std::int32_t value);
   void vex(const VectorOp& op, int reg, Ymm first, const Operand& last);
   void rex(bool wide, int reg, int rm, int index = 0);
-  void general(int opcode, int reg, const Memory& memory);
+  void general(bool wide, int opcode, int reg, const Memory& memory);
   void modrm(int reg, const Memory& memory);
   void distance_to(Label& to);
 

@@ -19,7 +19,8 @@ using ir::Op;
 bool asks_for_mask(const ir::Region& region) {
   return std::ranges::any_of(region.body, [](const ir::Instruction& in) {
     return !in.regions.empty() || in.op == Op::call || in.op == Op::external ||
-           in.op == Op::check || in.op == Op::array_store || in.op == Op::array_resize;
+           in.op == Op::check || in.op == Op::array_load || in.op == Op::array_store ||
+           in.op == Op::array_resize;
   });
 }
 
@@ -68,7 +69,7 @@ void FunctionCode::branch(const ir::Instruction& in) {
     places_.unpin();
   }
   places_.end_step();
-  places_.forget_registers();
+  forget_registers();
   code_.bind(behind_then);
 
   // The other.
@@ -94,7 +95,7 @@ void FunctionCode::branch_else(const ir::Instruction& in, const Memory& mask,
   region(otherwise);
   for (std::size_t i = 0; i < rows.size(); ++i)
     blend_into(rows[i], places_.operand(otherwise.yields[i]), mask);
-  places_.forget_registers();
+  forget_registers();
   code_.bind(behind);
 }
 
@@ -128,7 +129,7 @@ void FunctionCode::loop(const ir::Instruction& in) {
   places_.release_operands();
   places_.store_all();
   places_.end_step();
-  places_.forget_registers();
+  forget_registers();
 
   // The condition: who is still in.
   const Mask outer = mask_;
@@ -156,7 +157,7 @@ void FunctionCode::loop(const ir::Instruction& in) {
   region(body);
   next_turn(body, mask, rows);
   code_.jump(turn);
-  places_.forget_registers();
+  forget_registers();
   code_.bind(out);
   mask_ = outer;
   for (std::size_t i = 0; i < rows.size(); ++i) places_.set_row(in.results[i], rows[i], true);
@@ -221,7 +222,7 @@ void FunctionCode::call(const ir::Instruction& in) {
   code_.store({Places::frame, callee.mask}, active);
   places_.release_operands();
   places_.store_all();
-  places_.forget_registers();
+  forget_registers();
   code_.call(callee.entry);
   from_rows(in.results, callee.results);
 }

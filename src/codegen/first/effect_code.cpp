@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <utility>
 
 #include "codegen/first/function_code.h"
 #include "codegen/kernel_call.h"
@@ -56,6 +57,12 @@ void call_external(const KernelCall* call, std::int64_t external, const Row* mas
 
 }  // namespace
 
+// At places that are reached from several others, and behind calls.
+void FunctionCode::forget_registers() {
+  places_.forget_registers();
+  in_common_index_ = ir::no_value;
+}
+
 // What a C++ function overwrites is in no register afterwards.
 template <class F>
 void FunctionCode::call_host(F* function) {
@@ -90,7 +97,7 @@ void FunctionCode::to_block(std::span<const ir::Value> values) {
   }
   places_.release_operands();
   places_.store_all();
-  places_.forget_registers();
+  forget_registers();
 }
 
 void FunctionCode::from_rows(std::span<const ir::Value> values, std::int32_t row) {
@@ -125,8 +132,40 @@ void FunctionCode::begin_arrays() {
   }
 }
 
+// Puts the index that all active lanes have into a general register, unless it is there already.
+void FunctionCode::find_common_index(ir::Value index) {
+  if (std::exchange(in_common_index_, index) == index) return;
+  code_.store({Places::frame, kernel_.call_block}, places_.in_register(index));
+  if (!mask_) return code_.load32(common_index, {Places::frame, kernel_.call_block});
+  const Ymm active = places_.temporary();
+  code_.load(active, *mask_);
+  code_.mask_bits(Gpr::rax, active);
+  code_.lowest_bit(Gpr::rax, Gpr::rax);
+  code_.load32(common_index, {Places::frame, kernel_.call_block, static_cast<int>(Gpr::rax)});
+}
+
+// One element of an array of the frame, for all lanes.
+void FunctionCode::array_load_common(const ir::Instruction& in) {
+  find_common_index(in.operands[0]);
+  const Ymm to = places_.define(in.result());
+  Label outside;
+  code_.vector(op::xor_ps, to, to, to);
+  code_.load(Gpr::rax, {call_base, offsetof(KernelCall, frame_lengths)});
+  code_.compare32(common_index, {Gpr::rax, 4 * in.imm});
+  code_.jump(Assembler::When::not_below, outside);
+  code_.load(Gpr::rax, {call_base, offsetof(KernelCall, frame_arrays)});
+  const std::int64_t plane =
+      kernel_.frame_arrays.plane(function_.arrays, static_cast<std::size_t>(in.imm), in.component);
+  code_.vector(
+      op::broadcast, to, 0,
+      Memory{Gpr::rax, static_cast<std::int32_t>(4 * plane), static_cast<int>(common_index)});
+  code_.bind(outside);
+}
+
 // A gather of the lanes whose index is inside; 0 elsewhere.
 void FunctionCode::array_load(const ir::Instruction& in) {
+  if (!is_sample_array(in) && uniformity_ && !uniformity_->varying[in.operands[0]])
+    return array_load_common(in);
   const auto index = static_cast<std::size_t>(in.imm);
   const Ymm element = places_.in_register(in.operands[0]);
   const Ymm inside = places_.temporary(), cell = places_.temporary();
@@ -245,6 +284,9 @@ void FunctionCode::outputs() {
 // ---- Whole functions ----
 
 void FunctionCode::write_samples() {
+  const auto of_frame = [](const ir::Array& array) { return array.rate != ir::Rate::sample; };
+  if (std::ranges::any_of(function_.arrays, of_frame))
+    uniformity_ = find_uniformity(kernel_.split.module, function_, {});
   begin_arrays();
   region(function_.body);
   outputs();

@@ -10,11 +10,14 @@
 
 #include "codegen/first/kernel_code.h"
 #include "codegen/first/places.h"
+#include "codegen/uniformity.h"
 
 namespace pse::first {
 
 // Registers that hold the same all the time.
 inline constexpr Gpr call_base = Gpr::r12, sample_index = Gpr::r14, cancel_flag = Gpr::r15;
+// The index that the last loads of an array had in common for all lanes.
+inline constexpr Gpr common_index = Gpr::r10;
 
 class FunctionCode {
  public:
@@ -61,6 +64,8 @@ class FunctionCode {
   void begin_arrays();
   bool is_sample_array(const ir::Instruction& in) const;
   void array_load(const ir::Instruction& in);
+  void array_load_common(const ir::Instruction& in);
+  void find_common_index(ir::Value index);
   void array_length(const ir::Instruction& in);
   void array_store(const ir::Instruction& in);
   void array_store_at(const ir::Instruction& in, std::int32_t element);
@@ -70,6 +75,7 @@ class FunctionCode {
   void to_block(std::span<const ir::Value> values);
   void from_rows(std::span<const ir::Value> values, std::int32_t first);
   void mask_address(Gpr to);
+  void forget_registers();
   void array_address(Gpr to, const ir::Instruction& in, std::int32_t component);
   template <class F>
   void call_host(F* function);
@@ -85,6 +91,8 @@ class FunctionCode {
   const ir::Function& function_;
   Places places_;
   Mask mask_;
+  std::optional<Uniformity> uniformity_;      // where it is asked for
+  ir::Value in_common_index_ = ir::no_value;  // whose index common_index is
 };
 
 }  // namespace pse::first

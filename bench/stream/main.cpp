@@ -55,12 +55,14 @@ std::string read_file(const std::filesystem::path& path) {
   return text.str();
 }
 
-std::shared_ptr<const Program> compile_text(const std::string& text) {
+std::shared_ptr<const Program> compile_text(const std::string& text,
+                                            Tier tier = Tier::optimised) {
   SourceMap sources;
   Diagnostics diagnostics;
   CompileOptions options;
   options.lower.stream = image_plane_names();
   options.lower.outputs = {"color"};
+  options.tier = tier;
   const FileId file = sources.add("<bench>", text);
   auto program = compile(sources, file, {}, options, diagnostics);
   if (!program) {
@@ -124,7 +126,8 @@ void bench_edit(const std::string& text, int runs) {
   const Times times = repeat(runs, [&] {
     const auto start = std::chrono::steady_clock::now();
     // Every edit changes a constant of the picture, so nothing can come from a cache.
-    const auto program = compile_text(text + "\ncolor = color * " + std::to_string(++edit) + "\n");
+    const auto program = compile_text(
+        text + "\ncolor = color * " + std::to_string(++edit) + "\n", Tier::automatic);
     render(*program, 512, 0, picture);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

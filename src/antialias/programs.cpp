@@ -1,6 +1,8 @@
 // Compiling them from one lowered module.
 #include "antialias/programs.h"
 
+#include <chrono>
+
 #include "antialias/force.h"
 #include "antialias/path.h"
 #include "passes/passes.h"
@@ -10,6 +12,11 @@ namespace pse::antialias {
 std::expected<Programs, std::string> compile_programs(CompiledFront front,
                                                       const CompileOptions& options, Mode mode,
                                                       const InputChanges& changes) {
+  // For all but the program that is shown, whose passes may be watched.
+  const CompileOptions plain{.codegen = options.codegen,
+                             .tier = options.tier,
+                             .interpret = options.interpret,
+                             .optimize = options.optimize};
   Programs programs;
   programs.outputs = front.module.outputs.size();
   const auto finish = [&](CompiledFront&& with_checks) -> std::expected<Programs, std::string> {
@@ -23,9 +30,7 @@ std::expected<Programs, std::string> compile_programs(CompiledFront front,
     programs.shown = programs.quiet = *shown;
     // Checks that cannot fail are gone by now.
     if (mode == Mode::none || !has_checks((*shown)->module())) return std::move(programs);
-    auto quiet = compile_back(
-        std::move(*without),
-        {.codegen = options.codegen, .interpret = options.interpret, .optimize = options.optimize});
+    auto quiet = compile_back(std::move(*without), plain);
     if (!quiet) return std::unexpected(quiet.error());
     programs.quiet = *quiet;
     return std::move(programs);
@@ -39,8 +44,6 @@ std::expected<Programs, std::string> compile_programs(CompiledFront front,
   const Decisions decisions = find_decisions(copy.module);
   if (!decisions.any) return finish(std::move(front));
   programs.has_paths = true;
-  const CompileOptions plain{
-      .codegen = options.codegen, .interpret = options.interpret, .optimize = options.optimize};
   programs.conditions = std::async(std::launch::deferred, [open = copy, plain]() mutable {
                           const std::size_t own = open.module.outputs.size();
                           remove_checks(open.module);
@@ -52,19 +55,36 @@ std::expected<Programs, std::string> compile_programs(CompiledFront front,
   CompiledFront edges = copy;
   // Where nothing jumps there is seldom a visible edge, and it may never be asked for.
   const auto when = decisions.any_jump ? std::launch::async : std::launch::deferred;
-  const auto derive = [edges = std::move(edges), decisions, options, changes]() mutable {
+  const auto derive = [edges = std::move(edges), decisions, plain, changes]() mutable {
     remove_checks(edges.module);
     derive_edges(edges.module, decisions, changes);
     edges.program.outputs.clear();
     for (const ir::Output& output : edges.module.outputs)
       edges.program.outputs.push_back({output.name, 1, {}});
-    return compile_back(
-        std::move(edges),
-        {.codegen = options.codegen, .interpret = options.interpret, .optimize = options.optimize});
+    return compile_back(std::move(edges), plain);
   };
   programs.edges = std::async(when, derive).share();
   add_path(copy.module, decisions);
   return finish(std::move(copy));
+}
+
+TierSamples tier_samples(const Programs& programs) {
+  TierSamples sum;
+  const auto add = [&](const std::shared_ptr<const Program>& program) {
+    const TierSamples runs = program->kernel->tier_samples();
+    sum.first += runs.first;
+    sum.optimised += runs.optimised;
+  };
+  const auto add_if_made = [&](const std::shared_future<Programs::Result>& made) {
+    using namespace std::chrono_literals;
+    if (made.valid() && made.wait_for(0s) == std::future_status::ready && made.get())
+      add(*made.get());
+  };
+  add(programs.shown);
+  if (programs.quiet != programs.shown) add(programs.quiet);
+  add_if_made(programs.edges);
+  add_if_made(programs.conditions);
+  return sum;
 }
 
 }  // namespace pse::antialias

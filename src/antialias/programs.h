@@ -42,4 +42,7 @@ std::expected<Programs, std::string> compile_programs(
     CompiledFront front, const CompileOptions& options, Mode mode,
     const InputChanges& changes = unknown_changes);
 
+// What the kernels of all of them say.
+TierSamples tier_samples(const Programs& programs);
+
 }  // namespace pse::antialias

@@ -31,6 +31,7 @@ CompileOptions compile_settings(const RenderOptions& options,
   compile.codegen.width = options.width;
   compile.codegen.optimize = options.optimize;
   if (options.cache) compile.codegen.cache = cache_folder();
+  compile.tier = options.tier;
   compile.interpret = options.interpret;
   compile.optimize = options.optimize;
   return compile;

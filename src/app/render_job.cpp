@@ -76,7 +76,6 @@ RenderJob::RenderJob(Session& session, const RenderOptions& options, const Sourc
   window_ = choose_window();
   count_operations_ = session.arguments.has("stats");
   stats_.compile = program_->times;
-  stats_.width = program_->kernel->width();
   stats_.threads = thread_count(options_.threads);
   image::set_codec_threads(stats_.threads);
 
@@ -104,6 +103,8 @@ Exit RenderJob::run() {
     exit = run_frame(static_cast<int>(i), frames_[i]);
   progress_.finish();
   if (exit == Exit::ok) close_films();
+  stats_.tier_samples = antialias::tier_samples(programs_);
+  stats_.width = program_->kernel->width();
   return exit;
 }
 

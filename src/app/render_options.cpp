@@ -310,6 +310,11 @@ RenderOptions render_options(const Session& session) {
   options.interpret = arguments.has("interpret");
   options.optimize = !arguments.has("no-optimize");
   options.cache = !arguments.has("no-cache");
+  // Who asks for a width asks for LLVM's kernel; the first tier has one of its own.
+  const std::string tier = arguments.text_or("tier", options.width > 0 ? "optimised" : "auto");
+  options.tier = tier == "first"       ? Tier::first
+                 : tier == "optimised" ? Tier::optimised
+                                       : Tier::automatic;
 
   // How it is stored.
   read_write_options(arguments, options);

@@ -64,6 +64,7 @@ struct RenderOptions {
 
   int threads = 0, tile = 0, width = 0;
   bool interpret = false, optimize = true, cache = true;
+  Tier tier = Tier::automatic;
 
   image::WriteOptions write;
   std::optional<image::PixelType> storage;  // --half, --float

@@ -18,6 +18,7 @@ SpaceFunction::SpaceFunction(const std::string& path, const RenderOptions& optio
   compile_with.lower.stream = {{"point", 3, ir::Rate::sample, ir::InputSlopes::of_frame}};
   for (const StreamName& name : image_plane_names())
     if (name.rate == ir::Rate::frame) compile_with.lower.stream.push_back(name);
+  compile_with.tier = options.tier;
   compile_with.interpret = options.interpret;
   compile_with.codegen.width = options.width;
   Diagnostics diagnostics;

@@ -39,7 +39,10 @@ std::string stats_text(const RunStats& s) {
       fmt::format("compile       {} (parse {}, lower {}, passes {}, code {}{})\n",
                   human_seconds(compile), human_seconds(s.compile.parse),
                   human_seconds(s.compile.lower), human_seconds(s.compile.passes),
-                  human_seconds(s.compile.codegen), s.compile.from_cache ? " from the cache" : "");
+                  human_seconds(s.compile.codegen),
+                  s.compile.from_cache   ? " from the cache"
+                  : s.compile.first_tier ? " of the first tier"
+                                         : "");
   out += operations_text(s.operations, "");
   out += fmt::format("samples       {:.0f} in {} frame{}\n", s.samples, s.frames,
                      s.frames == 1 ? "" : "s");
@@ -53,6 +56,9 @@ std::string stats_text(const RunStats& s) {
   if (s.antialias.left > 0)
     out += fmt::format("              {} left as they are: stored pixels tell no more of their edges\n",
                        pixels(s.antialias.left));
+  if (s.tier_samples.first > 0)
+    out += fmt::format("code          {} samples by the first tier, {} by the optimised code\n",
+                       s.tier_samples.first, s.tier_samples.optimised);
   if (s.compute_seconds > 0)
     out += fmt::format("speed         {:.2f} million samples per second, {:.1f} ns each\n",
                        s.samples / s.compute_seconds * 1e-6,
@@ -71,7 +77,9 @@ std::string stats_json(const RunStats& s) {
         {"lower", s.compile.lower},
         {"passes", s.compile.passes},
         {"codegen", s.compile.codegen},
-        {"from_cache", s.compile.from_cache}}},
+        {"from_cache", s.compile.from_cache},
+        {"first_tier", s.compile.first_tier}}},
+      {"samples_by_tier", {{"first_tier", s.tier_samples.first}, {"optimised", s.tier_samples.optimised}}},
       {"operations",
        {{"written",
          {{"constant", s.operations.written[0]},

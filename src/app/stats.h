@@ -14,6 +14,7 @@ struct RunStats {
   OperationCounts operations;
   int width = 0, threads = 0;  // vector width; threads used
   int frames = 0;
+  TierSamples tier_samples;     // by which tier, those for antialiasing as well
   antialias::Counts antialias;  // pixels, of all frames
   double samples = 0;
   double compute_seconds =

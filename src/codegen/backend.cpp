@@ -27,7 +27,7 @@ std::filesystem::path own_folder() {
   return error ? file.parent_path() : real.parent_path();
 }
 
-std::expected<BackendEntry, std::string> open_backend() {
+std::expected<BackendEntry, std::string> backend_entry() {
   const std::filesystem::path path = backend_path();
   if (path.empty())
     return std::unexpected(std::string("the compiler module ") + file_name + " was not found");
@@ -57,8 +57,10 @@ std::filesystem::path backend_path() {
   return {};
 }
 
+void open_backend() { (void)backend_entry(); }
+
 std::expected<std::string, std::string> run_backend(const BackendRequest& request) {
-  const auto entry = open_backend();
+  const auto entry = backend_entry();
   if (!entry) return std::unexpected(entry.error());
   BackendReply reply;
   (*entry)(&request, &reply);

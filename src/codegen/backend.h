@@ -39,6 +39,8 @@ using BackendEntry = void (*)(const BackendRequest*, BackendReply*);
 // The module's file, found beside the running program or library, in ../lib/pse, or where it was
 // built.
 std::filesystem::path backend_path();
+// Loads the module ahead of its use; failure shows at the next run_backend().
+void open_backend();
 std::expected<std::string, std::string> run_backend(const BackendRequest& request);
 
 }  // namespace pse

@@ -30,8 +30,7 @@ void call_active(void (*call)(void*, std::int64_t, const float* const*, float* c
     in[a] = values[a].data();
   }
   for (std::size_t r = 0; r < got; ++r) out[r] = values[given + r].data();
-  if (count > 0)
-    call(user, static_cast<std::int64_t>(count), in.data(), out.data());
+  if (count > 0) call(user, static_cast<std::int64_t>(count), in.data(), out.data());
   for (std::size_t r = 0; r < got; ++r) {
     std::fill_n(result[r], lanes, 0.0f);
     for (std::size_t i = 0; i < count; ++i) result[r][lane[i]] = out[r][i];

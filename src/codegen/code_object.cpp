@@ -258,19 +258,38 @@ std::expected<CodeObject, std::string> CodeObject::load(
   Loader loader;
   if (!loader.read(objects) || !loader.lay_out()) return refuse();
   CodeObject code;
-  code.size_ = loader.size();
-  void* pages =
-      mmap(nullptr, code.size_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  const auto memory = code.map(loader.size());
+  if (!memory) return std::unexpected(memory.error());
+  if (!loader.fill(*memory)) return refuse();
+  if (const auto done = code.make_executable(); !done) return std::unexpected(done.error());
+  loader.export_symbols(*memory, code.symbols_);
+  return code;
+}
+
+std::expected<CodeObject, std::string> CodeObject::from_code(std::span<const std::byte> bytes,
+                                                             const std::string& symbol) {
+  CodeObject code;
+  const auto memory = code.map(bytes.size());
+  if (!memory) return std::unexpected(memory.error());
+  std::memcpy(*memory, bytes.data(), bytes.size());
+  if (const auto done = code.make_executable(); !done) return std::unexpected(done.error());
+  code.symbols_.emplace(symbol, *memory);
+  return code;
+}
+
+std::expected<std::byte*, std::string> CodeObject::map(std::size_t size) {
+  void* pages = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (pages == MAP_FAILED)
     return std::unexpected(std::string("there is no memory for compiled code"));
-  code.pages_ = pages;
-  auto* memory = static_cast<std::byte*>(pages);
-  if (!loader.fill(memory)) return refuse();
-  if (mprotect(pages, code.size_, PROT_READ | PROT_EXEC) != 0) {
+  pages_ = pages;
+  size_ = size;
+  return static_cast<std::byte*>(pages);
+}
+
+std::expected<void, std::string> CodeObject::make_executable() {
+  if (mprotect(pages_, size_, PROT_READ | PROT_EXEC) != 0)
     return std::unexpected(std::string("the system does not allow compiled code to run"));
-  }
-  loader.export_symbols(memory, code.symbols_);
-  return code;
+  return {};
 }
 
 CodeObject::CodeObject(CodeObject&& other) noexcept

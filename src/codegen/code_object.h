@@ -19,6 +19,10 @@ class CodeObject {
   static std::expected<CodeObject, std::string> load(
       std::span<const std::span<const std::byte>> objects);
 
+  // Takes code that needs no relocation, with one function at its start.
+  static std::expected<CodeObject, std::string> from_code(std::span<const std::byte> code,
+                                                          const std::string& symbol);
+
   CodeObject(CodeObject&& other) noexcept;
   CodeObject& operator=(CodeObject&& other) noexcept;
   ~CodeObject();
@@ -29,6 +33,8 @@ class CodeObject {
 
  private:
   CodeObject() = default;
+  std::expected<std::byte*, std::string> map(std::size_t size);
+  std::expected<void, std::string> make_executable();
 
   void* pages_ = nullptr;
   std::size_t size_ = 0;

@@ -12,6 +12,7 @@
 #include "codegen/backend.h"
 #include "codegen/code_object.h"
 #include "codegen/compiled_kernel.h"
+#include "codegen/first/first_kernel.h"
 #include "codegen/frame_code.h"
 #include "codegen/kernel_cache.h"
 #include "codegen/module_hash.h"
@@ -79,6 +80,10 @@ int pieces_of(const BackendRequest& request) {
   return ir::count_instructions(module) - frame > large ? 2 : 1;
 }
 
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 double thread_seconds() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -118,11 +123,13 @@ struct Made {
 };
 
 // The code of one entry point.
-std::expected<Made, std::string> code_of(const BackendRequest& request, const KernelCache& cache) {
+std::expected<Made, std::string> code_of(const BackendRequest& request, const KernelCache& cache,
+                                         bool only_cached = false) {
   const Hash128 key = cache.keeps() ? key_of(request) : Hash128{};
   if (const auto cached = cache.find(key)) {
     if (auto code = CodeObject::load(unbundle(*cached))) return Made{std::move(*code), true, 0};
   }
+  if (only_cached) return std::unexpected(std::string("the cache has no such kernel"));
   double behind = 0;
   const auto objects = make_objects(request, behind);
   if (!objects) return std::unexpected(objects.error());
@@ -132,7 +139,37 @@ std::expected<Made, std::string> code_of(const BackendRequest& request, const Ke
   return Made{std::move(*code), false, behind};
 }
 
+std::unique_ptr<const FrameCode> frame_code(const BackendRequest& request, const KernelCache& cache,
+                                            bool at_once) {
+  const auto compile = [cache,
+                        request](const passes::SplitModule& part) -> std::optional<CodeObject> {
+    BackendRequest mine = request;
+    mine.split = &part;
+    mine.part = BackendPart::frame;
+    auto code = code_of(mine, cache);
+    if (!code) return std::nullopt;
+    return std::move(code->code);
+  };
+  return std::make_unique<const FrameCode>(*request.split, compile, at_once);
+}
+
 }  // namespace
+
+std::expected<std::unique_ptr<Kernel>, std::string> make_first_kernel(
+    const passes::SplitModule& split, const CodegenOptions& options, CodegenStats* stats) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto request = make_request(split, options);
+  if (!request) return std::unexpected(request.error());
+  auto kernel =
+      first_kernel(split, frame_code(*request, KernelCache(options.cache), options.compile_frame));
+  if (kernel && stats) {
+    stats->seconds = seconds_since(start);
+    stats->first_tier = true;
+    stats->width = (*kernel)->width();
+    stats->cpu = request->target->name;
+  }
+  return kernel;
+}
 
 std::expected<std::unique_ptr<Kernel>, std::string> compile_kernel(const passes::SplitModule& split,
                                                                    const CodegenOptions& options,
@@ -145,25 +182,15 @@ std::expected<std::unique_ptr<Kernel>, std::string> compile_kernel(const passes:
                            std::string(request->target->name));
   }
   const KernelCache cache(options.cache);
-  auto made = code_of(*request, cache);
+  auto made = code_of(*request, cache, options.only_cached);
   if (!made) return std::unexpected(made.error());
 
-  const auto compile_frame =
-      [cache, frame = *request](const passes::SplitModule& part) -> std::optional<CodeObject> {
-    BackendRequest mine = frame;
-    mine.split = &part;
-    mine.part = BackendPart::frame;
-    auto code = code_of(mine, cache);
-    if (!code) return std::nullopt;
-    return std::move(code->code);
-  };
-  std::unique_ptr<Kernel> kernel = CompiledKernel::make(
-      split, std::move(made->code), request->width,
-      std::make_unique<const FrameCode>(split, compile_frame, options.compile_frame));
+  std::unique_ptr<Kernel> kernel =
+      CompiledKernel::make(split, std::move(made->code), request->width,
+                           frame_code(*request, cache, options.compile_frame));
   if (!kernel) return std::unexpected(std::string("the compiled code cannot be loaded"));
   if (stats) {
-    stats->seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    stats->seconds = seconds_since(start);
     stats->behind = made->behind;
     stats->from_cache = made->from_cache;
     stats->width = request->width;

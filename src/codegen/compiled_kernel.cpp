@@ -16,19 +16,21 @@ float* aligned(float* memory) {
 
 std::unique_ptr<CompiledKernel> CompiledKernel::make(const passes::SplitModule& split,
                                                      CodeObject code, int width,
-                                                     std::unique_ptr<const FrameCode> frame) {
+                                                     std::unique_ptr<const FrameCode> frame,
+                                                     std::size_t own_floats) {
   std::unique_ptr<CompiledKernel> kernel(
-      new CompiledKernel(split, std::move(code), width, std::move(frame)));
+      new CompiledKernel(split, std::move(code), width, std::move(frame), own_floats));
   return kernel->samples_ ? std::move(kernel) : nullptr;
 }
 
 CompiledKernel::CompiledKernel(const passes::SplitModule& split, CodeObject code, int width,
-                               std::unique_ptr<const FrameCode> frame)
+                               std::unique_ptr<const FrameCode> frame, std::size_t own_floats)
     : code_(std::move(code)),
       frame_(std::move(frame)),
       width_(width),
       output_count_(split.module.outputs.size()),
-      sample_layout_(split.module.main().arrays, width) {
+      sample_layout_(split.module.main().arrays, width),
+      own_floats_(own_floats) {
   for (const ir::Input& input : split.module.inputs)
     is_sample_input_.push_back(input.rate == ir::Rate::sample);
   samples_ = reinterpret_cast<KernelEntry>(const_cast<void*>(code_.find(samples_symbol)));
@@ -41,9 +43,10 @@ void CompiledKernel::run_frame(FrameState& state, RunStatus& status) const {
 void CompiledKernel::run_samples(const FrameState& state, RunStatus& status, Scratch& scratch,
                                  const float* const* inputs, float* const* outputs,
                                  std::int64_t count) const {
-  // Scratch: the arrays of a vector of samples, then buffers for the last, partly filled vector.
+  // Scratch: the arrays of a vector of samples, what the code wants for itself, then buffers for
+  // the last, partly filled vector.
   const auto width = static_cast<std::size_t>(width_);
-  const auto arrays = static_cast<std::size_t>(sample_layout_.size);
+  const auto arrays = static_cast<std::size_t>(sample_layout_.size) + own_floats_;
   const std::size_t needed = arrays + width * (is_sample_input_.size() + output_count_) + 16;
   if (scratch.memory.size() < needed) scratch.memory.resize(needed);
 

@@ -14,9 +14,11 @@ namespace pse {
 
 class CompiledKernel final : public Kernel {
  public:
-  // Null where the object lacks an entry point.
+  // Null where the object lacks an entry point. `own_floats`: memory that the code wants behind the
+  // sample's arrays, in KernelCall::scratch.
   static std::unique_ptr<CompiledKernel> make(const passes::SplitModule& split, CodeObject code,
-                                              int width, std::unique_ptr<const FrameCode> frame);
+                                              int width, std::unique_ptr<const FrameCode> frame,
+                                              std::size_t own_floats = 0);
 
   int width() const override { return width_; }
   void run_frame(FrameState& state, RunStatus& status) const override;
@@ -26,7 +28,7 @@ class CompiledKernel final : public Kernel {
 
  private:
   CompiledKernel(const passes::SplitModule& split, CodeObject code, int width,
-                 std::unique_ptr<const FrameCode> frame);
+                 std::unique_ptr<const FrameCode> frame, std::size_t own_floats);
   void run_tail(KernelCall call, RunStatus& status, float* buffers, std::int64_t first,
                 std::int64_t count) const;
 
@@ -36,6 +38,7 @@ class CompiledKernel final : public Kernel {
   std::vector<bool> is_sample_input_;
   std::size_t output_count_;
   SampleArrayLayout sample_layout_;
+  std::size_t own_floats_;
   KernelEntry samples_ = nullptr;
 };
 

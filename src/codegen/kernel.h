@@ -51,6 +51,11 @@ struct Scratch {
   std::vector<float> memory;
 };
 
+// Samples by the code that computed them.
+struct TierSamples {
+  std::int64_t first = 0, optimised = 0;
+};
+
 // A compiled program. Immutable and safe to share between threads.
 class Kernel {
  public:
@@ -66,6 +71,8 @@ class Kernel {
   virtual void run_samples(const FrameState& state, RunStatus& status, Scratch& scratch,
                            const float* const* inputs, float* const* outputs,
                            std::int64_t count) const = 0;
+  // So far; nothing where there are no tiers.
+  virtual TierSamples tier_samples() const { return {}; }
 };
 
 // The IR interpreter behind the same interface (width 1): the meaning that every kernel is tested
@@ -84,15 +91,16 @@ struct CodegenOptions {
   int width = 0;    // 1, 4, 8, 16, 32; 0: what this processor does best with this program
   std::string cpu;  // a name of codegen/target.h; empty: this processor
   bool optimize = true;
-  bool compile_frame = false;  // the frame function as well, at once; else it is interpreted until
-                               // compiling it pays
+  bool compile_frame = false;   // the frame function as well, at once; else it is interpreted until
+                                // compiling it pays
   std::filesystem::path cache;  // folder of compiled kernels by content; empty: none
+  bool only_cached = false;     // fail where the cache has nothing
 };
 
 struct CodegenStats {
   double seconds = 0;
   double behind = 0;  // seconds of work by which the slowest piece exceeds the calling thread's own
-  bool from_cache = false;
+  bool from_cache = false, first_tier = false;
   int width = 0;
   std::string cpu;
 };
@@ -101,6 +109,24 @@ struct CodegenStats {
 std::expected<std::unique_ptr<Kernel>, std::string> compile_kernel(const passes::SplitModule& split,
                                                                    const CodegenOptions& options,
                                                                    CodegenStats* stats = nullptr);
+
+// The first tier (first/kernel_code.h): native code within a millisecond or two, of about half the
+// speed, and the same bits. The error says why there is none for this program or this processor: no
+// error of the user's. Of the options only the frame function's matter.
+std::expected<std::unique_ptr<Kernel>, std::string> make_first_kernel(
+    const passes::SplitModule& split, const CodegenOptions& options, CodegenStats* stats = nullptr);
+
+// Which of the two. automatic: LLVM's kernel if the cache has it; else the first tier, and once
+// that has worked for as long as LLVM takes, LLVM's is compiled behind the back of whoever runs the
+// kernel, and takes its place between two pieces of a call of run_samples. Where there is no first
+// tier all are `optimised`.
+enum class Tier : std::uint8_t { automatic, first, optimised };
+std::expected<std::unique_ptr<Kernel>, std::string> make_kernel(
+    std::shared_ptr<const passes::SplitModule> split, const CodegenOptions& options, Tier tier,
+    CodegenStats* stats = nullptr);
+// Whether LLVM still compiles for a kernel that is in use or was. A process that wants to end at
+// once ends by _Exit then; by exit() or from main() it waits.
+bool compiles_behind();
 
 // `--emit llvm` and `--emit asm`.
 enum class Listing { llvm, assembly };

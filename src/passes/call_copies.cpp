@@ -3,7 +3,6 @@
 #include "passes/call_copies.h"
 
 #include <algorithm>
-#include <unordered_set>
 
 #include "passes/rewrite.h"
 
@@ -15,39 +14,40 @@ using ir::Op;
 using ir::Region;
 using ir::Value;
 
+}  // namespace
+
 // Collects what CallCopy says of its instructions.
-struct Describer {
+struct CallBody::Describer {
   const CallBody& body;
   CallCopy& copy;
-  std::unordered_map<Value, std::int64_t> numbers;  // of values defined inside
-  std::unordered_map<Value, std::uint32_t> uses;
   bool movable = true;
 
   void use(const std::vector<Value>& values) {
-    copy.shape.push_back(static_cast<std::int64_t>(values.size()));
+    copy.shape.push_back(static_cast<std::int32_t>(values.size()));
     for (const Value value : values) {
-      ++uses[value];
-      const auto found = numbers.find(value);
-      const bool inside = found != numbers.end() && !body.leaf(value);
-      copy.shape.push_back(inside ? found->second : -1);
-      if (!inside) {
-        copy.shape.push_back(static_cast<std::int64_t>(body.type(value)));
+      Inside& inside = body.inside_[value];
+      if (inside.number >= 0 && body.leaves_[value] == nullptr) {
+        ++inside.uses;
+        copy.shape.push_back(inside.number);
+      } else {
+        copy.shape.push_back(-1);
+        copy.shape.push_back(static_cast<std::int32_t>(body.type(value)));
         copy.outside.push_back(value);
       }
     }
   }
   void define(const std::vector<Value>& values) {
     for (const Value value : values) {
-      numbers.emplace(value, static_cast<std::int64_t>(copy.defined.size()));
+      body.inside_[value] = {static_cast<std::int32_t>(copy.defined.size()), 0};
       copy.defined.push_back(value);
-      copy.shape.push_back(static_cast<std::int64_t>(body.type(value)));
+      copy.shape.push_back(static_cast<std::int32_t>(body.type(value)));
     }
   }
   void walk(const Instruction& in) {
     if (is_leaf(in)) return;
     if (reads_array(in.op) || writes_array(in.op) || in.op == Op::check) movable = false;
     ++copy.size;
-    copy.shape.insert(copy.shape.end(), {static_cast<std::int64_t>(in.op), in.imm, in.component});
+    copy.shape.insert(copy.shape.end(), {static_cast<std::int32_t>(in.op), in.imm, in.component});
     use(in.operands);
     for (const Region& region : in.regions) {
       define(region.params);
@@ -59,15 +59,14 @@ struct Describer {
   }
 };
 
-}  // namespace
-
 bool is_leaf(const Instruction& in) { return is_constant(in.op) || in.op == Op::input; }
 
 CallBody::CallBody(ir::Function& function)
     : function_(function),
       places_(function.values.size()),
-      leaf_of_(function.values.size(), -1),
-      uses_(function.values.size()) {
+      leaves_(function.values.size()),
+      uses_(function.values.size()),
+      inside_(function.values.size()) {
   walk(function.body, 0);
 }
 
@@ -78,17 +77,13 @@ void CallBody::walk(Region& region, int depth) {
     for (const Value value : in.operands) ++uses_[value];
     for (Region& inner : in.regions) walk(inner, depth + 1);
     for (const Value value : in.results) places_[value] = {&region, i, depth};
-    if (is_leaf(in)) {
-      leaf_of_[in.result()] = static_cast<std::int32_t>(leaves_.size());
-      leaves_.push_back(in);
-    }
+    if (is_leaf(in)) leaves_[in.result()] = &in;
   }
   for (const Value value : region.yields) ++uses_[value];
 }
 
 const Instruction* CallBody::leaf(Value value) const {
-  if (value >= leaf_of_.size() || leaf_of_[value] < 0) return nullptr;
-  return &leaves_[static_cast<std::size_t>(leaf_of_[value])];
+  return value < leaves_.size() ? leaves_[value] : nullptr;
 }
 
 std::optional<CallCopy> CallBody::find(const ir::CallRange& call) const {
@@ -116,10 +111,12 @@ std::optional<CallCopy> CallBody::find(const ir::CallRange& call) const {
 }
 
 bool CallBody::describe(CallCopy& copy) const {
-  Describer describer{*this, copy, {}, {}};
+  Describer describer{*this, copy};
   for (std::size_t i = copy.from; i < copy.to; ++i) describer.walk(copy.region->body[i]);
   for (std::size_t i = 0; i < copy.defined.size(); ++i) {
-    if (uses_[copy.defined[i]] > describer.uses[copy.defined[i]]) copy.live.push_back(i);
+    Inside& inside = inside_[copy.defined[i]];
+    if (uses_[copy.defined[i]] > inside.uses) copy.live.push_back(i);
+    inside = {};
   }
   return describer.movable && copy.size > 0;
 }

@@ -19,7 +19,7 @@ struct CallCopy {
   ir::Region* region = nullptr;
   std::size_t from = 0, to = 0;
   std::size_t size = 0;             // instructions that are no leaves
-  std::vector<std::int64_t> shape;  // equal for copies that are alike
+  std::vector<std::int32_t> shape;  // equal for copies that are alike
   std::vector<ir::Value> outside;   // operands from outside, and leaves, as they occur
   std::vector<ir::Value> defined;   // what the instructions define, in order
   std::vector<std::size_t> live;    // of `defined`: used behind the copy
@@ -43,14 +43,20 @@ class CallBody {
     int depth = 0;
   };
 
+  struct Inside {
+    std::int32_t number = -1;  // among the values that the copy defines; -1: it does not
+    std::uint32_t uses = 0;
+  };
+  struct Describer;
+
   void walk(ir::Region& region, int depth);
   bool describe(CallCopy& copy) const;
 
   ir::Function& function_;
   std::vector<Place> places_;
-  std::vector<ir::Instruction> leaves_;
-  std::vector<std::int32_t> leaf_of_;  // per value: index into leaves_, or -1
+  std::vector<const ir::Instruction*> leaves_;  // per value: what defines it, if that is a leaf
   std::vector<std::uint32_t> uses_;
+  mutable std::vector<Inside> inside_;  // of the copy that is being described
 };
 
 // Writes a copy into a function of its own.

@@ -32,13 +32,15 @@ class Outliner {
   std::vector<std::pair<std::size_t, std::vector<CallRange>>> run(
       const std::vector<CallRange>& calls) {
     for (const CallRange& call : calls) {
+      // All that may move defines values, so that this is quickly told of most.
+      if (call.end - call.first < options_.min_size) continue;
       auto copy = body_.find(call);
       // A single instruction is a call already, or not worth one.
       if (copy && copy->size > 1 && copy->size >= options_.min_size)
         copies_.push_back(std::move(*copy));
     }
     // What saves most comes first; what overlaps it has its turn in the next round.
-    std::map<std::vector<std::int64_t>, std::vector<const CallCopy*>> by_shape;
+    std::map<std::vector<std::int32_t>, std::vector<const CallCopy*>> by_shape;
     for (const CallCopy& copy : copies_) {
       // A function that only calls another is the same copy twice.
       auto& group = by_shape[copy.shape];

@@ -69,10 +69,11 @@ std::expected<std::shared_ptr<const Program>, std::string> compile_back(
     program->kernel = make_interpreted_kernel(program->split);
   } else {
     CodegenStats stats;
-    auto kernel = compile_kernel(*program->split, options.codegen, &stats);
+    auto kernel = make_kernel(program->split, options.codegen, options.tier, &stats);
     if (!kernel) return std::unexpected(kernel.error());
     program->kernel = std::move(*kernel);
     program->times.from_cache = stats.from_cache;
+    program->times.first_tier = stats.first_tier;
     program->times.behind = stats.behind;
   }
   program->times.codegen = clock.lap();

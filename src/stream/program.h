@@ -16,6 +16,7 @@ namespace pse {
 struct CompileOptions {
   LowerOptions lower;
   CodegenOptions codegen;
+  Tier tier = Tier::optimised;
   bool interpret = false;  // run by the interpreter instead of compiled code
   bool optimize = true;
   passes::OutlineOptions outline;
@@ -25,7 +26,7 @@ struct CompileOptions {
 struct CompileTimes {
   double parse = 0, lower = 0, passes = 0, codegen = 0;  // seconds
   double behind = 0;  // CodegenStats::behind
-  bool from_cache = false;
+  bool from_cache = false, first_tier = false;
 };
 
 // A compiled program. Immutable; share it between threads and runs.

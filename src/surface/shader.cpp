@@ -138,6 +138,16 @@ void Shader::begin_frame(std::vector<FrameState> states) {
 
 int Shader::width() const { return parts_.empty() ? 1 : parts_.front().program->kernel->width(); }
 
+TierSamples Shader::tier_samples() const {
+  TierSamples sum;
+  for (const Part& part : parts_) {
+    const TierSamples runs = part.program->kernel->tier_samples();
+    sum.first += runs.first;
+    sum.optimised += runs.optimised;
+  }
+  return sum;
+}
+
 void Shader::run_frame(FrameState& state, RunStatus& status) const {
   const CurrentRun running(status);
   state.uniforms.resize(split_->module.inputs.size());

@@ -32,6 +32,7 @@ class Shader : public Kernel {
   bool shades_background() const { return program_of_.front() >= 0; }
 
   int width() const override;
+  TierSamples tier_samples() const override;
   void run_frame(FrameState& state, RunStatus& status) const override;
   void run_samples(const FrameState& state, RunStatus& status, Scratch& scratch,
                    const float* const* inputs, float* const* outputs,

@@ -81,6 +81,9 @@ std::string check_program(std::uint64_t seed) {
   const AgreementResult expected = run(*plain->kernel, plain->module(), seed);
   if (const std::string d = difference(expected, run(*optimised->kernel, optimised->module(), seed)); !d.empty())
     return fail("the passes change it: " + d);
+  if (const auto first = make_first_kernel(*optimised->split, {}))
+    if (const std::string d = difference(expected, run(**first, optimised->module(), seed)); !d.empty())
+      return fail("the first tier differs: " + d);
   static constexpr int widths[] = {16, 8, 4, 1};
   for (std::size_t w = 0; w < std::size(widths); ++w) {
     if (!large && seed % std::size(widths) != w) continue;

@@ -73,13 +73,17 @@ inline void PrintTo(const Machine& machine, std::ostream* out) {
   *out << machine.cpu << " x" << machine.width;
 }
 
-// Every width on every level that this processor has.
+// In the place of a processor level: the first tier's kernel.
+inline constexpr const char* first_tier = "first_tier";
+
+// Every width on every level that this processor has, and the first tier if it has that.
 inline std::vector<Machine> all_machines() {
   std::vector<Machine> result;
   for (const Target& target : targets) {
     if (!host_target() || &target > host_target()) continue;
     for (const int width : {1, 4, 8, 16, 32}) result.push_back({width, std::string(target.name)});
   }
+  if (host_target() && host_target()->avx2) result.push_back({8, first_tier});
   return result;
 }
 
@@ -92,7 +96,10 @@ inline std::unique_ptr<Kernel> compile(const TestProgram& program, const Machine
   options.cpu = machine.cpu;
   options.optimize = optimize;
   options.compile_frame = compile_frame;
-  auto kernel = compile_kernel(program.split, options);
+  const bool first = machine.cpu == first_tier;
+  if (first) options.cpu.clear();
+  auto kernel = first ? make_first_kernel(program.split, options)
+                      : compile_kernel(program.split, options);
   if (!kernel) {
     ADD_FAILURE() << kernel.error();
     return nullptr;

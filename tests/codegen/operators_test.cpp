@@ -1,5 +1,8 @@
 // Every operator without control against answers derived by hand, edge cases included, as varying
 // and uniform values.
+#include <array>
+
+#include "ir/evaluate.h"
 #include "kernel_fixture.h"
 
 namespace pse::testing_support {
@@ -263,6 +266,59 @@ TEST_P(Operator, GivesTheTablesBitsForUniformValues) {
     Runner once;
     const Columns out = once(*kernel, all.program.split.module, uniforms, {}, 3);
     for (std::size_t sample = 0; sample < 3; ++sample) all.expect_case(out, sample, i);
+  }
+}
+
+// The edges of each type; every operator meets all of their combinations.
+std::vector<std::uint32_t> awkward(char letter) {
+  if (letter == 'b') return {0, 1};
+  if (letter == 'f')
+    return {zero,          minus_zero, one, minus_one, f(0.5f), f(-2.5f),         tiny,
+            0x807fffffu,   huge,       inf, minus_inf, nan1,    f(2147483648.0f), f(-2147483648.0f),
+            f(8388609.0f), f(1e-30f)};
+  return {0, 1, 2, 5, 31, 32, 33, 0x7fffffffu, 0x80000000u, 0x80000001u, 0xffffffffu, 0x00ff80f1u};
+}
+
+// What it computes is what ir/evaluate.h says, with all awkward values for all operands.
+TEST(Operators, TheFirstTierMeansTheSameForAllAwkwardValues) {
+  if (!host_target() || !host_target()->avx2) GTEST_SKIP() << "a processor without AVX2";
+  for (const ir::OpInfo& info : ir::op_table()) {
+    if (!ir::is_scalar(info.op) || info.op == Op::select) continue;
+    TestProgram program;
+    emit_case(program, info.op, ir::Rate::sample);
+    program.finish();
+
+    // One sample for each combination.
+    std::vector<std::array<std::uint32_t, 3>> samples = {{0, 0, 0}};
+    for (std::size_t o = 0; o < info.operands.size(); ++o) {
+      std::vector<std::array<std::uint32_t, 3>> longer;
+      for (auto sample : samples)
+        for (const std::uint32_t value : awkward(info.operands[o]))
+          sample[o] = value, longer.push_back(sample);
+      samples = std::move(longer);
+    }
+    Columns columns(program.split.module.inputs.size());
+    for (const auto& sample : samples) {
+      std::vector<float> row;
+      for (std::size_t o = 0; o < info.operands.size(); ++o)
+        append(row, info.operands[o], sample[o]);
+      for (std::size_t i = 0; i < row.size(); ++i) columns[i].push_back(row[i]);
+    }
+    const Columns out =
+        run(program, {8, first_tier}, columns, static_cast<std::int64_t>(samples.size()));
+    const char letter = info.results.front();
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const auto& [a, b, c] = samples[i];
+      // The bits of a NaN are nobody's business.
+      if (info.op == Op::f2bits && ir::is_nan_bits(a)) continue;
+      std::uint32_t found = bits(out[0][i]);
+      if (letter == 'b') found = out[0][i] != 0 ? 1 : 0;
+      if (letter == 'i')
+        found = static_cast<std::uint32_t>(out[0][i]) << 16 | static_cast<std::uint32_t>(out[1][i]);
+      const ir::Bits meant = ir::evaluate(info.op, a, b, c);
+      ASSERT_EQ(found, letter == 'f' ? ir::canonical(meant) : meant)
+          << info.name << std::hex << " of " << a << ", " << b << ", " << c;
+    }
   }
 }
 

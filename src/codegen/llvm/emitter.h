@@ -18,8 +18,8 @@
 #include "codegen/array_layout.h"
 #include "codegen/backend.h"
 #include "codegen/llvm/asked_bits.h"
-#include "codegen/llvm/uniformity.h"
 #include "codegen/llvm/vector_tools.h"
+#include "codegen/uniformity.h"
 
 namespace pse {
 

@@ -1,7 +1,7 @@
 // Marks values as varying until nothing changes. A parameter of a loop with a varying condition can
 // still be uniform inside the loop, since all samples that are active there have run it equally
 // often; its result is varying.
-#include "codegen/llvm/uniformity.h"
+#include "codegen/uniformity.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // Which values are the same for all samples of a vector: those stay scalar in the code.
-// First step of the emitter; needs no LLVM.
+// First step of both emitters; needs no LLVM.
 #pragma once
 
 #include <vector>

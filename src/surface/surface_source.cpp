@@ -286,8 +286,8 @@ void SurfaceSource::fill_some(std::span<const double> x, std::span<const double>
 TileSource at_pixel_centres(std::shared_ptr<const SampleSource> source, double sample_x,
                             double sample_y) {
   return [source = std::move(source), sample_x, sample_y](const TileView& tile) {
-    std::vector<double> x, y;
-    x.reserve(static_cast<std::size_t>(tile.count)), y.reserve(static_cast<std::size_t>(tile.count));
+    thread_local std::vector<double> x, y;
+    x.clear(), y.clear();
     for (int row = tile.rect.y0; row < tile.rect.y1; ++row)
       for (int column = tile.rect.x0; column < tile.rect.x1; ++column)
         x.push_back(column + sample_x), y.push_back(row + sample_y);

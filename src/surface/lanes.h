@@ -20,8 +20,12 @@ using Answers = AnswersOf<Lanes>;
 // The same of a number and of many.
 [[gnu::always_inline]] inline bool any(bool answer) { return answer; }
 [[gnu::always_inline]] inline bool any(Answers answers) {
+#ifdef __AVX__
+  return __builtin_ia32_movmskpd256(__builtin_bit_cast(Lanes, answers)) != 0;
+#else
   answers |= __builtin_shufflevector(answers, answers, 2, 3, 0, 1);
   return (answers[0] | answers[1]) != 0;
+#endif
 }
 [[gnu::always_inline]] inline double choose(bool which, double yes, double no) {
   return which ? yes : no;

@@ -89,7 +89,8 @@ FindFunction find_function() {
 
 void meet_level_ray(const Profile& profile, const Ray& ray, Meeting& meeting) {
   const Vec3 &o = ray.origin, &d = ray.direction;
-  Course<double> course{o.x, o.y, o.z, d.x, d.y, d.z, ray.begin, ray.end};
+  Course<double> course{.ox = o.x, .oy = o.y, .oz = o.z, .dx = d.x, .dy = d.y, .dz = d.z,
+                        .least = ray.begin, .most = ray.end};
   course.prepare(profile.bounds);
   if (!(course.begin <= course.end)) return;
   Nearest<double> nearest{ray.end, 0, 0};

@@ -117,14 +117,16 @@ template <class Meet>
   // Meets those that have been collected; where they are too few, the last one stands for more.
   const auto meet = [&] {
     for (std::size_t i = filled; i < lane_count; ++i) which[i] = which[filled - 1];
-    Course<Lanes> course{};
-    for (std::size_t i = 0; i < lane_count; ++i) {
-      const Ray& ray = rays[which[i]];
-      course.ox[i] = ray.origin.x, course.oy[i] = ray.origin.y, course.oz[i] = ray.origin.z;
-      course.dx[i] = ray.direction.x, course.dy[i] = ray.direction.y;
-      course.dz[i] = ray.direction.z;
-      course.least[i] = ray.begin, course.most[i] = ray.end;
-    }
+    const Ray &p = rays[which[0]], &q = rays[which[1]], &r = rays[which[2]], &s = rays[which[3]];
+    Course<Lanes> course;
+    course.ox = Lanes{p.origin.x, q.origin.x, r.origin.x, s.origin.x};
+    course.oy = Lanes{p.origin.y, q.origin.y, r.origin.y, s.origin.y};
+    course.oz = Lanes{p.origin.z, q.origin.z, r.origin.z, s.origin.z};
+    course.dx = Lanes{p.direction.x, q.direction.x, r.direction.x, s.direction.x};
+    course.dy = Lanes{p.direction.y, q.direction.y, r.direction.y, s.direction.y};
+    course.dz = Lanes{p.direction.z, q.direction.z, r.direction.z, s.direction.z};
+    course.least = Lanes{p.begin, q.begin, r.begin, s.begin};
+    course.most = Lanes{p.end, q.end, r.end, s.end};
     course.prepare(profile.bounds);
     if (any(course.begin <= course.end)) {
       Nearest<Lanes> nearest{course.most, Lanes{}, Lanes{}};

@@ -56,12 +56,12 @@ template <class V>
 struct Course {
   V ox, oy, oz, dx, dy, dz;
   V least, most;        // the rays' own ends
-  V begin{}, end{};     // inside the bounds; begin > end where they miss them
-  V oo{}, od{}, dd{};   // o.o, o.d and d.d of what is seen from above
-  V per_height{};       // 1 / d.y
-  V middle{}, off{};    // where it is nearest to the axis, and the square of how near
+  V begin, end;         // inside the bounds; begin > end where they miss them
+  V oo, od, dd;         // o.o, o.d and d.d of what is seen from above
+  V per_height;         // 1 / d.y
+  V middle, off;        // where it is nearest to the axis, and the square of how near
 
-  // Computes what follows from the first two lines.
+  // Computes what follows from the first two lines, which are set.
   [[gnu::always_inline]] void prepare(const Box& bounds) {
     seen_from_above();
     beside_axis();

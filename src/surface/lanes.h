@@ -1,6 +1,6 @@
 // Doubles side by side: what is done for four rays at once. Each lane computes what a single number
-// would, so a ray's answer does not depend on who is in the company (antialias/lanes.h: the same for
-// floats). Everything here is part of its callers, which are compiled for more than one kind of
+// would, so a ray's answer does not depend on who is in the company (antialias/lanes.h: the same
+// for floats). Everything here is part of its callers, which are compiled for more than one kind of
 // processor.
 #pragma once
 

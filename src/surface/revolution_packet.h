@@ -1,6 +1,6 @@
-// Rays against a surface of revolution, four at once, for the instructions that the including file is
-// compiled for: revolution_any.cpp and revolution_avx2.cpp. Nothing here may be kept out of line but
-// what is local, since the linker would take one such function for both.
+// Rays against a surface of revolution, four at once, for the instructions that the including file
+// is compiled for: revolution_any.cpp and revolution_avx2.cpp. Nothing here may be kept out of line
+// but what is local, since the linker would take one such function for both.
 #pragma once
 
 #include "surface/revolution_profile.h"
@@ -11,7 +11,7 @@ namespace {
 
 // One ray of several.
 [[gnu::always_inline]] inline Course<double> one_of(const Course<Lanes>& c, std::size_t i) {
-  return {c.ox[i],    c.oy[i],  c.oz[i], c.dx[i], c.dy[i], c.dz[i],         c.least[i], c.most[i],
+  return {c.ox[i],    c.oy[i],  c.oz[i], c.dx[i], c.dy[i], c.dz[i],         c.least[i],  c.most[i],
           c.begin[i], c.end[i], c.oo[i], c.od[i], c.dd[i], c.per_height[i], c.middle[i], c.off[i]};
 }
 
@@ -74,8 +74,7 @@ template <class Meet>
   which &= changes > 0;
   if (!any(which)) return;
   for (int i = 0; i < 7; ++i)
-    power[i] =
-        w2 * piece.hh.powers[i] + of_h * piece.h.powers[i] - yy * piece.rr.powers[i];
+    power[i] = w2 * piece.hh.powers[i] + of_h * piece.h.powers[i] - yy * piece.rr.powers[i];
   power[0] += constant;
   const Answers once = which & (changes == 1);
   if (any(once)) {
@@ -110,8 +109,8 @@ template <class Meet>
   }
 }
 
-[[gnu::always_inline]] inline void find(const Profile& profile, std::size_t count,
-                                        const Ray* rays, Meeting* meetings) {
+[[gnu::always_inline]] inline void find(const Profile& profile, std::size_t count, const Ray* rays,
+                                        Meeting* meetings) {
   std::size_t likely = 0, filled = 0;
   std::size_t which[lane_count];
   // Meets those that have been collected; where they are too few, the last one stands for more.

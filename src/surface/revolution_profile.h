@@ -1,11 +1,11 @@
 // The profile of a surface of revolution, cut into the pieces that rays are met with
-// (revolution.cpp makes it), and what all its pieces ask of a ray. For one ray or for several side by
-// side: revolution_packet.h is compiled for more than one kind of processor, so that nothing here may
-// be kept out of line but what revolution.cpp defines.
+// (revolution.cpp makes it), and what all its pieces ask of a ray. For one ray or for several side
+// by side: revolution_packet.h is compiled for more than one kind of processor, so that nothing
+// here may be kept out of line but what revolution.cpp defines.
 #pragma once
 
 #include "surface/lanes.h"
-#include "surface/shapes.h"
+#include "surface/revolution.h"
 
 namespace pse::surface::revolution {
 
@@ -55,11 +55,11 @@ struct Nearest {
 template <class V>
 struct Course {
   V ox, oy, oz, dx, dy, dz;
-  V least, most;        // the rays' own ends
-  V begin, end;         // inside the bounds; begin > end where they miss them
-  V oo, od, dd;         // o.o, o.d and d.d of what is seen from above
-  V per_height;         // 1 / d.y
-  V middle, off;        // where it is nearest to the axis, and the square of how near
+  V least, most;  // the rays' own ends
+  V begin, end;   // inside the bounds; begin > end where they miss them
+  V oo, od, dd;   // o.o, o.d and d.d of what is seen from above
+  V per_height;   // 1 / d.y
+  V middle, off;  // where it is nearest to the axis, and the square of how near
 
   // Computes what follows from the first two lines, which are set.
   [[gnu::always_inline]] void prepare(const Box& bounds) {
@@ -99,8 +99,8 @@ struct Course {
 
   [[gnu::always_inline]] void keep(AnswersOf<V> which, V t, V v, double part,
                                    Nearest<V>& nearest) const {
-    which = which & (t > least) &
-            ((t < nearest.t) | ((t == nearest.t) & (V{} + part < nearest.part)));
+    which =
+        which & (t > least) & ((t < nearest.t) | ((t == nearest.t) & (V{} + part < nearest.part)));
     nearest.t = choose(which, t, nearest.t), nearest.v = choose(which, v, nearest.v);
     nearest.part = choose(which, V{} + part, nearest.part);
   }
@@ -148,17 +148,7 @@ void meet_level_ray(const Profile& profile, const Ray& ray, Meeting& meeting);
 void meet_disc(const Course<double>& ray, const Piece& piece, double part,
                Nearest<double>& nearest);
 // Where the polynomial may have several roots; of all, or of the first only that the ray comes to.
-void meet_many(const Course<double>& ray, const Piece& piece, double part,
-               const Sextic& polynomial, Nearest<double>& nearest);
-
-// What rays meet, as Shape::find() wants it: the same for any processor and for those with AVX2.
-using FindFunction = void (*)(const Profile& profile, std::size_t count, const Ray* rays,
-                              Meeting* meetings);
-FindFunction find_for_any();
-FindFunction find_for_avx2();
-
-// make_revolution() (shapes.h) with one of them; that chooses by the processor.
-std::shared_ptr<const Shape> make_for(const std::vector<ProfilePoint>& points, bool caps,
-                                      FindFunction find);
+void meet_many(const Course<double>& ray, const Piece& piece, double part, const Sextic& polynomial,
+               Nearest<double>& nearest);
 
 }  // namespace pse::surface::revolution

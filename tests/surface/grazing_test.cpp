@@ -67,7 +67,8 @@ TEST(Grazing, SuperquadricAroundItsMiddle) {
       ASSERT_TRUE(hit.found()) << north << " " << share;
       EXPECT_NEAR((away - hit.t) * (away - hit.t), 0.64 * share * (2 - share), 1e-13)
           << north << " " << share;
-      EXPECT_FALSE(first_hit(*shape, along_x(0, 0.8 * (1 + share))).found()) << north << " " << share;
+      EXPECT_FALSE(first_hit(*shape, along_x(0, 0.8 * (1 + share))).found())
+          << north << " " << share;
     }
   }
 }

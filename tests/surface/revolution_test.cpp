@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "rays.h"
-#include "surface/revolution_profile.h"
+#include "surface/revolution.h"
 #include "surface/shapes.h"
 
 namespace pse::surface {

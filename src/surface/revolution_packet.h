@@ -28,19 +28,19 @@ template <class Meet>
 }
 
 // The only root in [0, 1] of polynomials (rising powers) with the values at_0 and at_1 at its ends:
-// Newton's method, held in its bracket.
+// Newton's method, held in its bracket (roots.cpp: the same for one).
 [[gnu::always_inline]] inline Lanes refine(Answers open, const Lanes (&power)[7], Lanes at_0,
                                            Lanes at_1, Answers above) {
   const Lanes zero{}, one = zero + 1;
   Lanes a = zero, b = one;
-  Lanes x = choose(at_0 != at_1, smaller(larger(at_0 / (at_0 - at_1), zero), one), zero + 0.5);
+  Lanes x = choose(at_0 * at_1 < 0, at_0 / (at_0 - at_1), zero + 0.5);
   for (int step = 0; step < 60 && any(open); ++step) {
     Lanes value = power[6], slope = zero;
     for (int i = 6; i-- > 0;) slope = slope * x + value, value = value * x + power[i];
     const Answers before = (value > 0) == above;
     a = choose(before, x, a), b = choose(before, b, x);
     const Lanes newton = x - value / slope;
-    const Lanes next = choose((newton >= a) & (newton <= b), newton, 0.5 * (a + b));
+    const Lanes next = choose((newton > a) & (newton < b), newton, 0.5 * (a + b));
     const Answers found = value == 0;
     const Answers done = found | (size(next - x) <= 1e-12) | (next == a) | (next == b);
     x = choose(open & ~found, next, x);

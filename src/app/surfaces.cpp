@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <numbers>
+#include <set>
 
 #include "app/input_images.h"
 #include "app/knobs.h"
@@ -304,14 +305,16 @@ std::vector<FrameState> Surfaces::states(const Joined& joined, const ImagePlane&
 void Surfaces::begin_stored_frame() {
   const auto bare = images_->bare();
   surface::read_gbuffer_attributes(bare->reader.spec().attributes, stored_);
-  const std::vector<std::string> layers = surface::layers_wanted(
-      surface::Shader::combined(joined_.front().shader)->module(), layers_);
-  std::vector<std::string> channels;
+  std::set<std::string> layers, channels;
+  for (const Joined& joined : joined_)
+    for (const std::string& name :
+         surface::layers_wanted(surface::Shader::combined(joined.shader)->module(), layers_))
+      layers.insert(name);
   for (const std::string& name : layers)
     for (const int channel : image::find_layer(bare->layers, name)->channels)
-      channels.push_back(
-          bare->reader.spec().channels[static_cast<std::size_t>(channel)].name);
-  auto picture = image::read_image(bare->reader, {}, channels);
+      channels.insert(bare->reader.spec().channels[static_cast<std::size_t>(channel)].name);
+  const std::vector<std::string> names(channels.begin(), channels.end());
+  auto picture = image::read_image(bare->reader, {}, names);
   if (!picture) throw Failure(Exit::input, picture.error().message);
   picture_ = std::make_shared<const image::Image>(std::move(*picture));
 }

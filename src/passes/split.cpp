@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "ir/reads.h"
 #include "passes/passes.h"
 #include "passes/rewrite.h"
 #include "passes/split_functions.h"
@@ -93,14 +94,6 @@ void find_arrays_read(const Region& region, std::vector<bool>& read) {
   }
 }
 
-// Inputs that a function reads.
-void find_inputs(const Region& region, std::vector<bool>& used) {
-  for (const Instruction& in : region.body) {
-    if (in.op == Op::input) used[static_cast<std::size_t>(in.imm)] = true;
-    for (const Region& inner : in.regions) find_inputs(inner, used);
-  }
-}
-
 void renumber_inputs(Region& region, const std::vector<std::int32_t>& number) {
   for (Instruction& in : region.body) {
     if (in.op == Op::input) in.imm = number[static_cast<std::size_t>(in.imm)];
@@ -157,7 +150,7 @@ SplitModule split(ir::Module module) {
 
   // Only the slots that the sample still reads are filled.
   std::vector<bool> used(first_slot + sample.candidates.size(), false);
-  find_inputs(sample.function.body, used);
+  ir::mark_inputs_read(sample.function.body, used);
   std::vector<std::int32_t> number(used.size());
   std::vector<Value> slots;
   for (std::size_t i = 0; i < used.size(); ++i) {

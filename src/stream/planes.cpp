@@ -28,9 +28,10 @@ std::size_t floats(std::size_t count, std::int64_t capacity) {
 
 }  // namespace
 
-Planes::Planes(const std::vector<bool>& used, std::int64_t capacity) {
+void Planes::arrange(const std::vector<bool>& used, std::int64_t capacity) {
   const auto count = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
-  memory_.resize(floats(count, capacity));
+  if (memory_.size() < floats(count, capacity)) memory_.assign(floats(count, capacity), 0.0f);
+  pointers_.clear();
   void* start = memory_.data();
   std::size_t space = memory_.size() * sizeof(float);
   auto* next = static_cast<float*>(std::align(line * sizeof(float), sizeof(float), start, space));

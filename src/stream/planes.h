@@ -18,7 +18,9 @@ class Planes {
   Planes() = default;
   // One plane per entry of `used` that is true, null for the others; room for `capacity` floats
   // each.
-  Planes(const std::vector<bool>& used, std::int64_t capacity);
+  Planes(const std::vector<bool>& used, std::int64_t capacity) { arrange(used, capacity); }
+  // Other planes, in the memory that there is where it suffices; what was in it is left there.
+  void arrange(const std::vector<bool>& used, std::int64_t capacity);
 
   std::span<float* const> pointers() const { return pointers_; }
   static std::size_t bytes(const std::vector<bool>& used, std::int64_t capacity);

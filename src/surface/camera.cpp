@@ -1,6 +1,7 @@
 // Rays from the eye through the picture.
 #include "surface/camera.h"
 
+#include <array>
 #include <numbers>
 
 namespace pse::surface {
@@ -46,5 +47,29 @@ Lens::Lens(const Camera& camera, int width, int height)
       step_(scale_ / height),
       pixel_(2 * scale_ / height),
       parallel_(camera.height > 0) {}
+
+// Roots and quotients of several rays at once.
+void Lens::rays(std::span<const double> x, std::span<const double> y,
+                std::span<const std::uint32_t> which, std::span<Ray> rays) const {
+  constexpr std::size_t most = 64;
+  for (std::size_t first = 0; first < which.size(); first += most) {
+    const std::size_t count = std::min(most, which.size() - first);
+    std::array<Vec3, most> away;
+    std::array<double, most> scales;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t i = which[first + k];
+      const double across = step_ * (2 * x[i] - width_), upward = step_ * (height_ - 2 * y[i]);
+      away[k] = across * right_ + upward * up_;
+      if (!parallel_) away[k] = forward_ + away[k];
+      scales[k] = dot(away[k], away[k]);
+    }
+    if (parallel_) {
+      for (std::size_t k = 0; k < count; ++k) rays[first + k] = {eye_ + away[k], forward_};
+      continue;
+    }
+    for (std::size_t k = 0; k < count; ++k) scales[k] = 1 / std::sqrt(scales[k]);
+    for (std::size_t k = 0; k < count; ++k) rays[first + k] = {eye_, scales[k] * away[k]};
+  }
+}
 
 }  // namespace pse::surface

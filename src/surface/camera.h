@@ -29,6 +29,9 @@ class Lens {
     if (parallel_) return {eye_ + offset, forward_};
     return {eye_, normalized(forward_ + offset)};
   }
+  // rays[k] becomes ray(x[which[k]], y[which[k]]), the same bits.
+  void rays(std::span<const double> x, std::span<const double> y,
+            std::span<const std::uint32_t> which, std::span<Ray> rays) const;
   // How far in front of the eye's plane a point of that ray at distance t lies.
   double depth(const Ray& ray, double t) const {
     return t * dot(ray.direction, forward_) + dot(ray.origin - eye_, forward_);

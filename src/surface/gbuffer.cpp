@@ -348,29 +348,56 @@ bool GBuffer::is_same_everywhere(const Wanted& wanted) const {
 
 void GBuffer::fill(std::span<const double> x, std::span<const double> y,
                    std::span<float* const> planes) const {
-  const std::int64_t width = data_.width();
-  std::vector<std::int64_t> places(x.size());
+  // Cut the samples into rows of pixels that lie side by side in the stored planes.
+  thread_local std::vector<Row> rows;
+  rows.clear();
   for (std::size_t i = 0; i < x.size(); ++i) {
     const int px = static_cast<int>(std::floor(x[i])) + display_.x0,
               py = static_cast<int>(std::floor(y[i])) + display_.y0;
-    places[i] = data_.contains(px, py) ? (py - data_.y0) * width + (px - data_.x0) : -1;
+    const std::int64_t pixel =
+        data_.contains(px, py)
+            ? std::int64_t{py - data_.y0} * data_.width() + (px - data_.x0)
+            : outside;
+    const bool goes_on = !rows.empty() && (pixel == outside
+                                               ? rows.back().pixel == outside
+                                               : rows.back().pixel != outside &&
+                                                     rows.back().pixel + rows.back().count == pixel);
+    goes_on ? void(++rows.back().count) : rows.push_back({static_cast<std::int64_t>(i), 1, pixel});
   }
   for (const Wanted& wanted : wanted_) {
-    float* out = planes[wanted.input];
-    if (out == nullptr) continue;
-    if (wanted.what == What::layer || wanted.what == What::negated) {
-      const float sign = wanted.what == What::negated ? -1.0f : 1.0f;
-      for (std::size_t i = 0; i < places.size(); ++i)
-        out[i] = places[i] < 0 ? 0 : sign * wanted.plane[places[i]];
-      continue;
+    float* const plane = planes[wanted.input];
+    if (plane == nullptr) continue;
+    for (const Row& row : rows) {
+      float* const out = plane + row.sample;
+      if (row.pixel == outside && !is_same_everywhere(wanted))
+        std::fill_n(out, row.count, 0.0f);
+      else
+        fill_row(wanted, row.pixel, row.count, out);
     }
-    if (is_same_everywhere(wanted)) {
-      std::fill_n(out, places.size(), value(wanted, 0));
-      continue;
-    }
-    for (std::size_t i = 0; i < places.size(); ++i)
-      out[i] = places[i] < 0 ? 0 : value(wanted, static_cast<std::size_t>(places[i]));
   }
+}
+
+void GBuffer::fill_row(const Wanted& wanted, std::int64_t first, std::int64_t count,
+                       float* out) const {
+  const auto all = [&](const auto& value_at) {
+    for (std::int64_t i = 0; i < count; ++i) out[i] = value_at(static_cast<std::size_t>(first + i));
+  };
+  if (is_same_everywhere(wanted)) {
+    std::fill_n(out, count, value(wanted, 0));
+    return;
+  }
+  const float* const plane = wanted.plane;
+  switch (wanted.what) {
+    case What::layer: std::copy_n(plane + first, count, out); return;
+    case What::negated: return all([&](std::size_t pixel) { return -plane[pixel]; });
+    case What::slope_x: return all([&](std::size_t pixel) { return slope_at(plane, true, pixel); });
+    case What::slope_y: return all([&](std::size_t pixel) { return slope_at(plane, false, pixel); });
+    case What::id:
+      if (hit_ == nullptr || id_ != nullptr) break;
+      return all([&](std::size_t pixel) { return hit_[pixel] > 0 ? 1.0f : 0.0f; });
+    default: break;
+  }
+  all([&](std::size_t pixel) { return value(wanted, pixel); });
 }
 
 }  // namespace pse::surface

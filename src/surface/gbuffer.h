@@ -71,6 +71,12 @@ class GBuffer : public SampleSource {
   float slope_at(const float* plane, bool along_x, std::size_t pixel) const;
   bool is_same_everywhere(const Wanted& wanted) const;
   float value(const Wanted& wanted, std::size_t pixel) const;
+  // Samples whose pixels lie side by side in the stored planes, from `pixel` on, or all outside.
+  struct Row {
+    std::int64_t sample, count, pixel;
+  };
+  static constexpr std::int64_t outside = -1;
+  void fill_row(const Wanted& wanted, std::int64_t first, std::int64_t count, float* out) const;
 
   std::shared_ptr<const image::Image> picture_;
   std::map<std::string, std::vector<const float*>> planes_;

@@ -30,9 +30,10 @@ struct Search {
     for (std::size_t i = degree; i-- > 0;) slope = slope * x + value, value = value * x + power[i];
   }
 
-  // One root lies in [a, b], where the values are at_a and at_b, of different sign or 0.
+  // The sign changes once within [a, b], where the values are at_a and at_b, of different sign or 0.
+  // A value of 0 at an end is another root, at which this one must not stop.
   void refine(double a, double b, double at_a, double at_b, bool above) {
-    double x = a + (b - a) * (at_a != at_b ? std::clamp(at_a / (at_a - at_b), 0.0, 1.0) : 0.5);
+    double x = a + (b - a) * (at_a * at_b < 0 ? at_a / (at_a - at_b) : 0.5);
     for (int step = 0; step < 60; ++step) {
       double value, slope;
       value_and_slope(x, value, slope);
@@ -42,7 +43,7 @@ struct Search {
       else
         b = x;
       double next = slope != 0 ? x - value / slope : a;
-      if (!(next >= a && next <= b)) next = 0.5 * (a + b);
+      if (!(next > a && next < b)) next = 0.5 * (a + b);
       const bool done = std::abs(next - x) <= 1e-12 || next == a || next == b;
       x = next;
       if (done) break;

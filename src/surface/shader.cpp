@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "antialias/path.h"
+#include "ir/reads.h"
 #include "stream/planes.h"
 
 namespace pse::surface {
@@ -39,6 +40,36 @@ class CurrentRun {
 };
 
 }  // namespace
+
+// What a thread keeps from one call of run_samples() to the next: fresh memory costs as much as
+// tracing rays. A program that traces comes back to run_samples() within a call, and finds another.
+struct Shader::Room {
+  std::vector<std::vector<std::uint32_t>> of_part;  // the samples that each program shades
+  std::vector<bool> gathers, results_used;
+  std::vector<const float*> in;
+  std::vector<float*> out;
+  Planes gathered, results;
+  Scratch scratch;
+
+  // A room for as long as it is held.
+  class Held {
+   public:
+    Held() {
+      if (unused.empty()) unused.push_back(std::make_unique<Room>());
+      room_ = std::move(unused.back());
+      unused.pop_back();
+    }
+    ~Held() { unused.push_back(std::move(room_)); }
+    Held(const Held&) = delete;
+    Held& operator=(const Held&) = delete;
+    Room& operator*() const { return *room_; }
+
+   private:
+    std::unique_ptr<Room> room_;
+    static thread_local std::vector<std::unique_ptr<Room>> unused;
+  };
+};
+thread_local std::vector<std::unique_ptr<Shader::Room>> Shader::Room::Held::unused;
 
 Shader::Shader(std::vector<std::shared_ptr<const Program>> programs, std::vector<int> program_of,
                bool paths)
@@ -82,9 +113,11 @@ void Shader::make_module() {
   module.inputs.push_back({"id", ir::Rate::sample});
   for (Part& part : parts_) {
     const ir::Module& own = part.program->module();
-    for (const ir::Input& input : own.inputs)
-      part.input_of.push_back(input.rate == ir::Rate::sample ? index_of(module.inputs, input)
-                                                             : std::size_t(-1));
+    const std::vector<bool> read = ir::inputs_read(own);
+    for (std::size_t i = 0; i < own.inputs.size(); ++i) {
+      const bool wanted = own.inputs[i].rate == ir::Rate::sample && read[i];
+      part.input_of.push_back(wanted ? index_of(module.inputs, own.inputs[i]) : none);
+    }
     part.outputs_of.resize(own.outputs.size());
     for (const ProgramOutput& output : part.program->outputs) {
       const std::size_t joined = index_of(outputs_, output);
@@ -163,17 +196,21 @@ void Shader::run_samples(const FrameState&, RunStatus& status, Scratch&,
                          std::int64_t count) const {
   const CurrentRun running(status);
   const float* ids = inputs[id_input_];
-  std::vector<std::vector<std::uint32_t>> which(parts_.size());
+  const Room::Held held;
+  Room& room = *held;
+  if (room.of_part.size() < parts_.size()) room.of_part.resize(parts_.size());
+  for (auto& samples : room.of_part) samples.clear();
+  const auto last = static_cast<float>(program_of_.size() - 1);
   for (std::int64_t i = 0; i < count; ++i) {
     const float id = ids[i];
-    const auto last = static_cast<float>(program_of_.size() - 1);
     const int part = id >= 0 ? program_of_[static_cast<std::size_t>(std::min(id, last))] : -1;
-    if (part >= 0) which[static_cast<std::size_t>(part)].push_back(static_cast<std::uint32_t>(i));
+    if (part >= 0)
+      room.of_part[static_cast<std::size_t>(part)].push_back(static_cast<std::uint32_t>(i));
   }
   for (std::size_t o = 0; o < split_->module.outputs.size(); ++o)
     std::fill_n(outputs[o], count, 0.0f);
   for (std::size_t k = 0; k < parts_.size(); ++k)
-    if (!which[k].empty()) run_part(k, status, inputs, outputs, which[k], count);
+    if (!room.of_part[k].empty()) run_part(k, status, inputs, outputs, count, room);
   if (!has_paths_) return;
   float* path = outputs[path_output_];
   for (std::int64_t i = 0; i < count; ++i) {
@@ -183,33 +220,34 @@ void Shader::run_samples(const FrameState&, RunStatus& status, Scratch&,
 }
 
 void Shader::run_part(std::size_t k, RunStatus& status, const float* const* inputs,
-                      float* const* outputs, const std::vector<std::uint32_t>& which,
-                      std::int64_t count) const {
+                      float* const* outputs, std::int64_t count, Room& room) const {
   const Part& part = parts_[k];
   const ir::Module& module = part.program->module();
+  const std::vector<std::uint32_t>& which = room.of_part[k];
   const bool all = std::cmp_equal(which.size(), count);
   const auto samples = static_cast<std::int64_t>(which.size());
 
   // Gather.
-  std::vector<bool> used(module.inputs.size());
-  for (std::size_t i = 0; i < used.size(); ++i) used[i] = part.input_of[i] != std::size_t(-1);
-  const Planes gathered(all ? std::vector<bool>(used.size(), false) : used, samples);
-  std::vector<const float*> in(used.size(), nullptr);
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    if (!used[i]) continue;
+  room.gathers.assign(module.inputs.size(), false);
+  for (std::size_t i = 0; i < room.gathers.size() && !all; ++i)
+    room.gathers[i] = part.input_of[i] != none;
+  room.gathered.arrange(room.gathers, samples);
+  room.in.assign(module.inputs.size(), nullptr);
+  for (std::size_t i = 0; i < room.in.size(); ++i) {
+    if (part.input_of[i] == none) continue;
     const float* from = inputs[part.input_of[i]];
-    in[i] = from;
+    room.in[i] = from;
     if (all) continue;
-    float* to = gathered.pointers()[i];
+    float* to = room.gathered.pointers()[i];
     for (std::size_t s = 0; s < which.size(); ++s) to[s] = from[which[s]];
-    in[i] = to;
+    room.in[i] = to;
   }
 
   // Run.
-  const Planes results(std::vector<bool>(module.outputs.size(), true), samples);
-  Scratch scratch;
-  part.program->kernel->run_samples(states_[k], status, scratch, in.data(),
-                                    results.pointers().data(), samples);
+  room.results_used.assign(module.outputs.size(), true);
+  room.results.arrange(room.results_used, samples);
+  part.program->kernel->run_samples(states_[k], status, room.scratch, room.in.data(),
+                                    room.results.pointers().data(), samples);
   if (status.failed_check >= 0) {
     status.failed_check += part.first_check;
     status.failed_sample = which[std::min<std::size_t>(status.failed_sample, which.size() - 1)];
@@ -220,7 +258,7 @@ void Shader::run_part(std::size_t k, RunStatus& status, const float* const* inpu
   for (std::size_t o = 0; o < module.outputs.size(); ++o)
     for (const std::size_t to : part.outputs_of[o])
       for (std::size_t s = 0; s < which.size(); ++s)
-        outputs[to][which[s]] = results.pointers()[o][s];
+        outputs[to][which[s]] = room.results.pointers()[o][s];
   if (!part.sets_alpha)
     for (const std::uint32_t s : which) outputs[alpha_output_][s] = 1;
 }

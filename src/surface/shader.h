@@ -44,16 +44,19 @@ class Shader : public Kernel {
   static constexpr int deepest = 5;
 
  private:
+  static constexpr std::size_t none = std::size_t(-1);
   struct Part {
     std::shared_ptr<const Program> program;
-    std::vector<std::size_t> input_of;  // module input -> input of the combined module
+    // Module input -> input of the combined module, for those that it reads at sample rate; else
+    // `none`.
+    std::vector<std::size_t> input_of;
     std::vector<std::vector<std::size_t>> outputs_of;  // module output -> of the combined module
     bool sets_alpha = false;
     std::int32_t first_check = 0;
   };
+  struct Room;
   void run_part(std::size_t part, RunStatus& status, const float* const* inputs,
-                float* const* outputs, const std::vector<std::uint32_t>& which,
-                std::int64_t count) const;
+                float* const* outputs, std::int64_t count, Room& room) const;
   void make_module();
 
   std::vector<Part> parts_;

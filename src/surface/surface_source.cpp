@@ -236,23 +236,21 @@ namespace {
 
 // The order in which rays are sent: where samples are rows of a picture, in blocks of 4 by 2 pixels,
 // so that eight rays in a row lie side by side. (What a sample shows does not depend on it.)
-std::vector<std::uint32_t> in_blocks(std::span<const double> y) {
-  std::vector<std::uint32_t> order;
-  order.reserve(y.size());
+void in_blocks(std::span<const double> y, std::vector<std::uint32_t>& order) {
+  order.clear();
   std::size_t row = 1;
   while (row < y.size() && y[row] == y[0]) ++row;
   const std::size_t rows = y.size() / row;
   const auto add = [&](std::size_t i) { order.push_back(static_cast<std::uint32_t>(i)); };
   if (row < 8 || row * rows != y.size()) {
     for (std::size_t i = 0; i < y.size(); ++i) add(i);
-    return order;
+    return;
   }
   for (std::size_t top = 0; top < rows; top += 2)
     for (std::size_t left = 0; left < row; left += 4)
       for (std::size_t down = top; down < std::min(top + 2, rows); ++down)
         for (std::size_t across = left; across < std::min(left + 4, row); ++across)
           add(down * row + across);
-  return order;
 }
 
 }  // namespace
@@ -261,7 +259,8 @@ std::vector<std::uint32_t> in_blocks(std::span<const double> y) {
 void SurfaceSource::fill(std::span<const double> x, std::span<const double> y,
                          std::span<float* const> planes) const {
   constexpr std::size_t piece = 256;
-  const std::vector<std::uint32_t> order = in_blocks(y);
+  thread_local std::vector<std::uint32_t> order;
+  in_blocks(y, order);
   for (std::size_t i = 0; i < x.size(); i += piece)
     fill_some(x, y, std::span(order).subspan(i, std::min(piece, x.size() - i)), planes);
 }
@@ -272,11 +271,15 @@ void SurfaceSource::fill_some(std::span<const double> x, std::span<const double>
   thread_local std::vector<Ray> rays;
   thread_local std::vector<Hit> hits;
   thread_local std::vector<Sighting> sightings;
-  rays.clear(), sightings.clear();
-  hits.resize(samples.size());
-  for (const std::uint32_t i : samples) rays.push_back(lens_.ray(x[i], y[i]));
+  sightings.clear();
+  rays.resize(samples.size()), hits.resize(samples.size());
+  lens_.rays(x, y, samples, rays);
   scene_->trace(rays, hits);
   for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (!hits[k].found() && !misses_) {
+      sightings.push_back({samples[k], &rays[k], 0, 0});
+      continue;
+    }
     const double t = hits[k].found() ? hits[k].t() : 1;
     sightings.push_back({samples[k], &rays[k], lens_.width(rays[k], t), lens_.depth(rays[k], t)});
   }
@@ -286,8 +289,8 @@ void SurfaceSource::fill_some(std::span<const double> x, std::span<const double>
 TileSource at_pixel_centres(std::shared_ptr<const SampleSource> source, double sample_x,
                             double sample_y) {
   return [source = std::move(source), sample_x, sample_y](const TileView& tile) {
-    std::vector<double> x, y;
-    x.reserve(static_cast<std::size_t>(tile.count)), y.reserve(static_cast<std::size_t>(tile.count));
+    thread_local std::vector<double> x, y;
+    x.clear(), y.clear();
     for (int row = tile.rect.y0; row < tile.rect.y1; ++row)
       for (int column = tile.rect.x0; column < tile.rect.x1; ++column)
         x.push_back(column + sample_x), y.push_back(row + sample_y);

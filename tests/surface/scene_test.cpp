@@ -154,5 +154,26 @@ TEST(Scenes, AHitOfAMeshDependsOnItsRayAlone) {
   expect_alone_as_together(Scene({{"sheets", *shape, {}, 0}}, {}), rays);
 }
 
+// Those of many places at once are those of each.
+TEST(Cameras, RaysOfManyPlacesAreThoseOfEach) {
+  Camera camera;
+  camera.eye = {1, 2, 5};
+  for (const double height : {0.0, 3.0}) {
+    camera.height = height;
+    const Lens lens(camera, 40, 30);
+    std::vector<double> x, y;
+    std::vector<std::uint32_t> which;
+    for (std::uint32_t i = 0; i < 100; ++i)
+      x.push_back(0.37 * i), y.push_back(30 - 0.29 * i), which.push_back(99 - i);
+    std::vector<Ray> rays(which.size());
+    lens.rays(x, y, which, rays);
+    for (std::size_t k = 0; k < which.size(); ++k) {
+      const Ray one = lens.ray(x[which[k]], y[which[k]]);
+      EXPECT_EQ(rays[k].origin, one.origin);
+      EXPECT_EQ(rays[k].direction, one.direction);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pse::surface

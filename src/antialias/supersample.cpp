@@ -200,14 +200,29 @@ void Refiner::settle(const std::vector<Unclear>& unclear, Refined& result, Work&
         result.values[o][start + i] /= static_cast<float>(look);
     }
   });
-  if (more.empty()) return;
-  sample(more, look, count, work, status,
-         [&](std::size_t i, const Results& results, std::size_t at) {
-           for (std::size_t o = 0; o < outputs_; ++o) {
-             float& value = result.values[o][places[i]];
-             value = (value + sum_of({results[o] + at, count - look})) / static_cast<float>(count);
-           }
-         });
+  // Half of the samples are enough, but for outlines: theirs are long, and nothing else smooths
+  // them.
+  std::uint32_t taken = look;
+  for (const std::uint32_t next : {std::max(look, count / 2), count}) {
+    if (next > taken)
+      sample(more, taken, next, work, status,
+             [&](std::size_t i, const Results& results, std::size_t at) {
+               for (std::size_t o = 0; o < outputs_; ++o)
+                 result.values[o][places[i]] += sum_of({results[o] + at, next - taken});
+             });
+    taken = next;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < more.size(); ++i) {
+      if (next < count && more[i].silhouette) {
+        more[kept] = more[i], places[kept] = places[i];
+        ++kept;
+        continue;
+      }
+      for (std::size_t o = 0; o < outputs_; ++o)
+        result.values[o][places[i]] /= static_cast<float>(taken);
+    }
+    more.resize(kept), places.resize(kept);
+  }
 }
 
 }  // namespace pse::antialias

@@ -76,23 +76,10 @@ TEST_F(FirstTier, LoopsThatExchangeTheirValues) {
   ir::Builder& b = program.build;
   const ir::Value turns = b.emit(Op::f2i, {program.input()});
   const ir::Value one = b.const_f32(1), two = b.const_f32(2), three = b.const_f32(3);
-  ir::Region head, body;
-  b.begin_region(head);
-  const ir::Value count = b.add_param(head, ir::Type::i32);
-  for (int i = 0; i < 3; ++i) b.add_param(head, ir::Type::f32);
-  const ir::Value more = b.emit(Op::ilt, {count, turns});
-  b.end_region();
-  head.yields = {more};
-  b.begin_region(body);
-  const ir::Value at = b.add_param(body, ir::Type::i32);
-  const ir::Value x = b.add_param(body, ir::Type::f32), y = b.add_param(body, ir::Type::f32),
-                  z = b.add_param(body, ir::Type::f32);
-  const ir::Value next = b.emit(Op::iadd, {at, b.const_i32(1)});
-  b.end_region();
-  body.yields = {next, y, z, x};
-  const auto results = b.emit_loop(std::vector<ir::Value>{b.const_i32(0), one, two, three},
-                                   std::move(head), std::move(body));
-  for (std::size_t i = 1; i < 4; ++i) program.output(results[i]);
+  const auto results = program.counted_loop(turns, {one, two, three}, [](const auto& now) {
+    return TestProgram::Carried{now[1], now[2], now[0]};
+  });
+  for (const ir::Value result : results) program.output(result);
   program.finish();
   const Columns out = run(program, first, {{0, 1, 2, 3, 4, 5, 6, 7, 100}}, 9);
   for (std::size_t s = 0; s < 9; ++s) {
@@ -109,28 +96,17 @@ TEST_F(FirstTier, ValuesFromOutsideLastThroughALoop) {
   ir::Builder& b = program.build;
   const ir::Value turns = b.emit(Op::f2i, {program.input()});
   const ir::Value outer = b.emit(Op::fadd, {program.input(), b.const_f32(0.5f)});
-  ir::Region head, body;
-  b.begin_region(head);
-  const ir::Value count = b.add_param(head, ir::Type::i32);
-  b.add_param(head, ir::Type::f32);
-  const ir::Value more = b.emit(Op::ilt, {count, turns});
-  b.end_region();
-  head.yields = {more};
-  b.begin_region(body);
-  const ir::Value at = b.add_param(body, ir::Type::i32), sum = b.add_param(body, ir::Type::f32);
-  ir::Value value = b.emit(Op::fadd, {sum, outer});
-  // Twenty more that are alive together.
-  std::vector<ir::Value> others;
-  for (int i = 0; i < 20; ++i)
-    others.push_back(b.emit(Op::fmul, {value, b.const_f32(static_cast<float>(i))}));
-  for (const ir::Value other : others)
-    value = b.emit(Op::fadd, {value, b.emit(Op::fsub, {other, other})});
-  const ir::Value next = b.emit(Op::iadd, {at, b.const_i32(1)});
-  b.end_region();
-  body.yields = {next, value};
-  const auto results = b.emit_loop(std::vector<ir::Value>{b.const_i32(0), b.const_f32(0)},
-                                   std::move(head), std::move(body));
-  program.output(results[1]);
+  const auto results = program.counted_loop(turns, {b.const_f32(0)}, [&](const auto& sum) {
+    ir::Value value = b.emit(Op::fadd, {sum[0], outer});
+    // Twenty more that are alive together.
+    std::vector<ir::Value> others;
+    for (int i = 0; i < 20; ++i)
+      others.push_back(b.emit(Op::fmul, {value, b.const_f32(static_cast<float>(i))}));
+    for (const ir::Value other : others)
+      value = b.emit(Op::fadd, {value, b.emit(Op::fsub, {other, other})});
+    return TestProgram::Carried{value};
+  });
+  program.output(results[0]);
   program.finish();
   const Columns out = run(program, first, {{0, 1, 2, 3, 4, 5, 6, 7}, {1, 2, 3, 4, 5, 6, 7, 8}}, 8);
   for (std::size_t s = 0; s < 8; ++s)

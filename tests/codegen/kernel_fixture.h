@@ -62,6 +62,37 @@ struct TestProgram {
   void output_bool(ir::Value value) {
     output(build.emit(ir::Op::select, {value, build.const_f32(1), build.const_f32(0)}));
   }
+  // A loop of `turns` turns that carries numbers, beginning with `start`; `turn` makes the next ones
+  // of them. The result is what the last turn leaves.
+  using Carried = std::vector<ir::Value>;
+  Carried counted_loop(ir::Value turns, const Carried& start,
+                       const std::function<Carried(const Carried&)>& turn) {
+    const auto with_count = [](ir::Value count, Carried values) {
+      values.insert(values.begin(), count);
+      return values;
+    };
+    const auto params = [&](ir::Region& region, ir::Value& count) {
+      count = build.add_param(region, ir::Type::i32);
+      Carried values;
+      for (std::size_t i = 0; i < start.size(); ++i)
+        values.push_back(build.add_param(region, ir::Type::f32));
+      return values;
+    };
+    ir::Region head, body;
+    ir::Value count = ir::no_value;
+    build.begin_region(head);
+    params(head, count);
+    head.yields = {build.emit(ir::Op::ilt, {count, turns})};
+    build.end_region();
+    build.begin_region(body);
+    const Carried now = params(body, count);
+    const Carried next = turn(now);
+    body.yields = with_count(build.emit(ir::Op::iadd, {count, build.const_i32(1)}), next);
+    build.end_region();
+    const Carried all = build.emit_loop(with_count(build.const_i32(0), start), std::move(head),
+                                        std::move(body));
+    return {all.begin() + 1, all.end()};
+  }
   void finish() { split.first_slot = static_cast<std::uint32_t>(split.module.inputs.size()); }
 };
 

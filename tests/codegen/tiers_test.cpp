@@ -16,22 +16,11 @@ std::shared_ptr<const passes::SplitModule> sums() {
   TestProgram program;
   ir::Builder& b = program.build;
   const ir::Value x = program.input();
-  ir::Region head, body;
-  b.begin_region(head);
-  const ir::Value count = b.add_param(head, ir::Type::i32);
-  b.add_param(head, ir::Type::f32);
-  const ir::Value more = b.emit(Op::ilt, {count, b.const_i32(200)});
-  b.end_region();
-  head.yields = {more};
-  b.begin_region(body);
-  const ir::Value at = b.add_param(body, ir::Type::i32), sum = b.add_param(body, ir::Type::f32);
-  const ir::Value value = b.emit(Op::fadd, {sum, b.emit(Op::fmul, {x, x})});
-  const ir::Value next = b.emit(Op::iadd, {at, b.const_i32(1)});
-  b.end_region();
-  body.yields = {next, value};
-  const auto results = b.emit_loop(std::vector<ir::Value>{b.const_i32(0), b.const_f32(0)},
-                                   std::move(head), std::move(body));
-  program.output(results[1]);
+  const auto results =
+      program.counted_loop(b.const_i32(200), {b.const_f32(0)}, [&](const auto& sum) {
+        return TestProgram::Carried{b.emit(Op::fadd, {sum[0], b.emit(Op::fmul, {x, x})})};
+      });
+  program.output(results[0]);
   program.finish();
   return std::make_shared<const passes::SplitModule>(program.split);
 }

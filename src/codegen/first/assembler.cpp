@@ -113,11 +113,13 @@ void Assembler::fill_distance(std::size_t where, std::size_t to) {
   std::memcpy(code_.data() + where, &distance, sizeof distance);
 }
 
-void Assembler::move(Gpr to, Gpr from) {
+void Assembler::pair(int opcode, Gpr to, Gpr from) {
   rex(true, number(from), number(to));
-  byte(0x89);
+  byte(opcode);
   byte(3 << 6 | (number(from) & 7) << 3 | (number(to) & 7));
 }
+
+void Assembler::move(Gpr to, Gpr from) { pair(0x89, to, from); }
 
 void Assembler::set32(Gpr to, std::int32_t value) {
   rex(false, 0, number(to));
@@ -132,11 +134,7 @@ void Assembler::set64(Gpr to, std::uint64_t value) {
   word(static_cast<std::int32_t>(value >> 32));
 }
 
-void Assembler::add(Gpr to, Gpr other) {
-  rex(true, number(other), number(to));
-  byte(0x01);
-  byte(3 << 6 | (number(other) & 7) << 3 | (number(to) & 7));
-}
+void Assembler::add(Gpr to, Gpr other) { pair(0x01, to, other); }
 
 void Assembler::add(Gpr to, std::int32_t value) {
   rex(true, 0, number(to));

@@ -132,6 +132,7 @@ class Assembler {
   void word(std::int32_t value);
   void vex(const VectorOp& op, int reg, Ymm first, const Operand& last);
   void rex(bool wide, int reg, int rm, int index = 0);
+  void pair(int opcode, Gpr to, Gpr from);  // an instruction of two registers of 64 bits
   void general(bool wide, int opcode, int reg, const Memory& memory);
   void modrm(int reg, const Memory& memory);
   void distance_to(Label& to);

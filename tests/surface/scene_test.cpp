@@ -60,6 +60,22 @@ TEST(Scenes, AThousandBallsAreMetAsOneByOne) {
   EXPECT_GT(met, 2000u);
 }
 
+// Rays that touch balls where these touch their boxes: a box a little too small would hide them.
+TEST(Scenes, BallsAreMetAtTheFacesOfTheirBoxes) {
+  const std::vector<Object> balls = thousand_balls();
+  for (std::size_t i = 0; i < 50; ++i) {
+    const Scene scene({balls[i], balls[i + 50]}, {});
+    const double inside = balls[i].shape->bounds().upper.x * (1 - 1e-7);
+    for (const Vec3& pole : {Vec3{0, inside, 0}, Vec3{0, -inside, 0}, Vec3{0, 0, inside},
+                             Vec3{0, 0, -inside}}) {
+      const Ray ray{balls[i].to_world.offset + pole - Vec3{5, 0, 0}, {1, 0, 0}};
+      Hit hit;
+      scene.trace({&ray, 1}, {&hit, 1});
+      EXPECT_GE(hit.object, 0) << i;
+    }
+  }
+}
+
 TEST(Scenes, OfTwoInTheSamePlaceTheFirstIsSeen) {
   const auto ball = make_sphere(1);
   const Scene scene({{"one", ball, {}, 0}, {"two", ball, {}, 0}, {"floor", make_plane(Box::inf), {}, 0}},

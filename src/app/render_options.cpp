@@ -312,6 +312,10 @@ RenderOptions render_options(const Session& session) {
   options.cache = !arguments.has("no-cache");
   // Who asks for a width asks for LLVM's kernel; the first tier has one of its own.
   const std::string tier = arguments.text_or("tier", options.width > 0 ? "optimised" : "auto");
+  if (tier == "first" && options.width > 0)
+    throw Failure(Exit::usage,
+                  "--width is a choice of the optimised code: leave it out, or take --tier "
+                  "optimised");
   options.tier = tier == "first"       ? Tier::first
                  : tier == "optimised" ? Tier::optimised
                                        : Tier::automatic;

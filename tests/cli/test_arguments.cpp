@@ -75,6 +75,8 @@ TEST_F(Arguments, WrongValuesAreUsageErrorsThatNameTheOption) {
       {"-t", "99999"},
       {"--tile", "0"},
       {"--width", "3"},
+      {"--tier", "fast"},
+      {"--tier", "first", "--width", "4"},
       {"--fps", "0"},
       {"--fps", "nan"},
       {"--seed", "-1"},

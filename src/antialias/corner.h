@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "antialias/derive.h"
@@ -15,6 +16,9 @@ namespace pse::antialias {
 
 struct Lines {
   Line first{no_edge, 1, 0}, second{no_edge, 1, 0};  // as seen from the pixel's centre
+  bool are_within(float reach) const {
+    return std::abs(first.distance) < reach && std::abs(second.distance) < reach;
+  }
 };
 
 class Corner {

@@ -21,6 +21,9 @@ using Answers = AnswersOf<Eight>;
 // texture's own detail.
 constexpr float least_step = 0.01f;
 
+// Searches end in the same place where their ends differ by less.
+constexpr float least_end = 0.05f;
+
 // Nearer than this to a value, others do not jump from it.
 [[gnu::always_inline]] inline Eight least_step_from(Eight value) {
   constexpr float huge = 1e30f;
@@ -42,7 +45,7 @@ struct Jumps {
 
 // What is seen of eight pixels.
 struct Seen {
-  Answers edge{}, silhouette{}, narrow{};
+  Answers edge{}, silhouette{}, narrow{}, crowded{};
 };
 
 // Looks at all pixels whose columns and rows are within `reach`.
@@ -54,7 +57,8 @@ class Search {
         room_(room),
         width_(tile.area.width()),
         samples_(width_ * tile.area.height()),
-        path_(tile.path()) {
+        way_(tile.way()),
+        ends_(tile.ends()) {
     std::ptrdiff_t* step = steps_;
     for (std::ptrdiff_t dx = 1; dx <= reach; ++dx) *step++ = dx;
     for (std::ptrdiff_t dy = 1; dy <= reach; ++dy)
@@ -78,7 +82,7 @@ class Search {
         const int x = tile_.rect.x0 + static_cast<int>(i);
         const int count = static_cast<int>(width - i < 8 ? width - i : 8);
         for (int k = 0; k < count; ++k) {
-          *next = {x + k, y, seen.silhouette[k] != 0, seen.edge[k] == 0};
+          *next = {x + k, y, seen.silhouette[k] != 0, seen.edge[k] == 0, seen.crowded[k] != 0};
           next -= wanted[k];
         }
       }
@@ -87,28 +91,34 @@ class Search {
   }
 
  private:
-  // For all samples of the area: not 0 where the path changes along the row within reach.
+  // Whether the searches of samples end in different places.
+  [[gnu::always_inline]] Answers end_apart(std::ptrdiff_t here, std::ptrdiff_t there) const {
+    return ~(size(load<Eight>(ends_ + there) - load<Eight>(ends_ + here)) <= least_end);
+  }
+  [[gnu::always_inline]] Answers changes(std::ptrdiff_t here, std::ptrdiff_t there) const {
+    const Answers change = load<Answers>(way_ + here) ^ load<Answers>(way_ + there);
+    return ends_ == nullptr ? change : change | end_apart(here, there);
+  }
+
+  // For all samples of the area: not 0 where the way changes along the row within reach.
   [[gnu::always_inline]] void see_changes_along_rows() const {
     for (std::ptrdiff_t i = reach; i + reach < samples_; i += eight) {
-      const Answers here = load<Answers>(path_ + i);
       Answers change{};
-      for (int k = 1; k <= reach; ++k)
-        change |= (load<Answers>(path_ + i - k) ^ here) | (load<Answers>(path_ + i + k) ^ here);
+      for (int k = 1; k <= reach; ++k) change |= changes(i, i - k) | changes(i, i + k);
       store(room_.changes + i, change);
     }
   }
 
-  // For the samples of a row: not 0 where the path changes within reach. Whether there is any.
+  // For the samples of a row: not 0 where the way changes within reach. Whether there is any.
   [[gnu::always_inline]] bool see_changes(std::ptrdiff_t first, std::ptrdiff_t count,
                                           std::int32_t* changes) const {
     Answers any_change{};
     for (std::ptrdiff_t i = 0; i < count; i += eight) {
       const std::ptrdiff_t at = first + i;
-      const Answers here = load<Answers>(path_ + at);
       Answers change = load<Answers>(room_.changes + at);
       for (std::ptrdiff_t k = width_; k <= reach * width_; k += width_)
-        change |= (load<Answers>(path_ + at - k) ^ here) | load<Answers>(room_.changes + at - k) |
-                  (load<Answers>(path_ + at + k) ^ here) | load<Answers>(room_.changes + at + k);
+        change |= this->changes(at, at - k) | load<Answers>(room_.changes + at - k) |
+                  this->changes(at, at + k) | load<Answers>(room_.changes + at + k);
       store(changes + i, change);
       any_change |= change;
     }
@@ -122,6 +132,7 @@ class Search {
     seen.edge = Answers{};
     for (const std::ptrdiff_t step : steps_) look_along(seen, here, step);
     seen.narrow &= ~seen.edge;
+    if (any(seen.edge)) seen.crowded = is_crowded(here);
     return seen;
   }
 
@@ -145,17 +156,32 @@ class Search {
 
   // Whether more than one decision falls differently (path.cpp).
   [[gnu::always_inline]] Answers leap(std::ptrdiff_t here, std::ptrdiff_t there) const {
-    const Eight a = load<Eight>(path_ + here), b = load<Eight>(path_ + there);
-    const Answers steps = (whole(a) - whole(b)) & 7;
-    return (a != b) & (steps != 1) & (steps != 7);
+    const Eight a = load<Eight>(way_ + here), b = load<Eight>(way_ + there);
+    const Answers apart = (whole(a) - whole(b)) & 1023, steps = apart & 7;
+    return (apart != 0) & (steps != 1) & (steps != 7);
+  }
+
+  // Whether too few of the eight pixels around go the same way for one or two edges to part them.
+  [[gnu::always_inline]] Answers is_crowded(std::ptrdiff_t here) const {
+    constexpr int least_alike = 2;
+    const Answers way = load<Answers>(way_ + here);
+    Answers alike{};
+    for (const std::ptrdiff_t step : {std::ptrdiff_t{1}, width_ - 1, width_, width_ + 1})
+      alike += (load<Answers>(way_ + here + step) == way) + (load<Answers>(way_ + here - step) == way);
+    return alike > -least_alike;
   }
 
   // At the two neighbours `step` before and behind each.
   [[gnu::always_inline]] void look_along(Seen& seen, std::ptrdiff_t here,
                                          std::ptrdiff_t step) const {
-    const Answers way = load<Answers>(path_ + here);
-    const Answers ahead = load<Answers>(path_ + here + step) != way;
-    const Answers back = load<Answers>(path_ + here - step) != way;
+    const Answers way = load<Answers>(way_ + here);
+    Answers ahead = load<Answers>(way_ + here + step) != way;
+    Answers back = load<Answers>(way_ + here - step) != way;
+    if (ends_ != nullptr) {
+      const Jumps ends = jumps(load<Eight>(ends_ + here), load<Eight>(ends_ + here + step),
+                               load<Eight>(ends_ + here - step), Eight{} + least_end);
+      ahead |= ends.ahead, back |= ends.back;
+    }
     Answers jumps_ahead{}, jumps_back{};
     for (std::size_t o = 0; o < tile_.outputs; ++o) {
       const float* at = tile_.planes[o] + here;
@@ -176,7 +202,8 @@ class Search {
   const Tile& tile_;
   const SearchRoom& room_;
   const std::ptrdiff_t width_, samples_;
-  const float* const path_;
+  const float* const way_;
+  const float* const ends_;  // null: there are none
   std::ptrdiff_t steps_[2 * reach * (reach + 1)];  // to one of each two opposite neighbours
 };
 

@@ -240,24 +240,22 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
   Refined result({}, outputs_);
   if (found.empty()) return result;
   counts.filtered += static_cast<std::int64_t>(found.size());
-  std::vector<Pixel> inner, narrow;
+  std::vector<Pixel> inner;
   std::vector<Unclear> unclear;
   for (const Pixel& pixel : found) {
     // The program knows the edges within objects, not those of the objects.
-    if (pixel.silhouette || edges_ == nullptr)
+    if (pixel.silhouette || pixel.narrow || pixel.crowded || edges_ == nullptr)
       unclear.push_back({pixel});
     else
-      (pixel.narrow ? narrow : inner).push_back(pixel);
+      inner.push_back(pixel);
   }
-  if (!narrow.empty()) glance(tile, narrow, unclear, work, status);
   if (!inner.empty()) {
     Crossings crossings = find_crossings(inner, unclear, work, status);
     follow(crossings, unclear, work, status);
     blend(tile, crossings, result, unclear, work, status);
   }
   counts.blended += static_cast<std::int64_t>(result.pixels.size());
-  counts.supersampled += static_cast<std::int64_t>(unclear.size());
-  settle(unclear, result, work, status);
+  settle(tile, unclear, result, counts, work, status);
   return result;
 }
 

@@ -37,6 +37,13 @@ struct Refined {
   }
 };
 
+struct Range {
+  float low = 0, high = 0;
+  Range with(const Range& other) const {
+    return {std::min(other.low, low), std::max(other.high, high)};
+  }
+};
+
 class Refiner {
  public:
   // `edges` may be null: then everything is supersampled.
@@ -75,10 +82,10 @@ class Refiner {
               RunStatus& status, const Visit& visit) const;
   bool by_regions(const Unclear& pixel, std::uint32_t look, const Results& results, std::size_t at,
                   std::span<float> values) const;
-  void glance(const Tile& tile, const std::vector<Pixel>& narrow, std::vector<Unclear>& unclear,
-              Work& work, RunStatus& status) const;
-  void settle(const std::vector<Unclear>& unclear, Refined& result, Work& work,
-              RunStatus& status) const;
+  static bool shows_more(const Tile& tile, const Pixel& pixel, std::size_t output,
+                         const Range& range);
+  void settle(const Tile& tile, const std::vector<Unclear>& unclear, Refined& result,
+              Counts& counts, Work& work, RunStatus& status) const;
 
   const PlaceRunner& program_;
   const PlaceRunner* edges_;

@@ -3,6 +3,7 @@
 // their mean.
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 #include "antialias/lanes.h"
 #include "antialias/refine.h"
@@ -12,12 +13,12 @@ namespace {
 
 // Places handed to the program at once.
 constexpr std::size_t most_places = 1 << 10;
-// So many samples tell whether there is anything in a narrow pixel.
-constexpr std::uint32_t first_glance = 8;
-// So many samples tell whether a pixel needs the others: where they spread over less than
-// mean_per_range times what can be seen, their mean is near enough.
-constexpr std::uint32_t first_look = 16;
-constexpr float mean_per_range = 12;
+// A pixel gets this many samples, then twice as many and so on: until their mean is near enough,
+// which is so where they spread over less than this part of their number times what can be seen.
+constexpr std::uint32_t first_look = 8;
+constexpr float mean_per_range = 3;
+// So many samples tell the values of the regions of two edges.
+constexpr std::uint32_t corner_look = 16;
 
 // Sums are taken in a fixed order: of every eighth value, then of these.
 constexpr std::size_t lanes = 2 * four;
@@ -39,9 +40,6 @@ float sum_of(std::span<const float> values) {
   return total(sums, values.subspan(k));
 }
 
-struct Range {
-  float low, high;
-};
 
 Range range_of(std::span<const float> values) {
   Four lows = Four{} + values[0], highs = lows;
@@ -58,10 +56,10 @@ Range range_of(std::span<const float> values) {
   return range;
 }
 
-// Whether what is spread over them can be seen in their mean.
-bool is_uneven(std::span<const float> values) {
-  const auto [low, high] = range_of(values);
-  return differ(low, low + (high - low) / mean_per_range);
+// Whether what `count` samples are spread over can be seen in their mean.
+bool is_uneven(const Range& range, std::uint32_t count) {
+  const float part = (range.high - range.low) / (mean_per_range * static_cast<float>(count));
+  return differ(range.low, range.low + part);
 }
 
 }  // namespace
@@ -109,15 +107,13 @@ bool Refiner::by_regions(const Unclear& pixel, std::uint32_t look, const Results
                          std::size_t at, std::span<float> values) const {
   constexpr float least_weight = 0.004f;
   const float reach = options_.filter.reach();
-  if (!(std::abs(pixel.lines.first.distance) < reach) ||
-      !(std::abs(pixel.lines.second.distance) < reach))
-    return false;
+  if (!pixel.lines.are_within(reach)) return false;
   const Offsets offsets = patterns_.of(pixel.pixel.x, pixel.pixel.y);
   const Corner corner(pixel.lines);
   std::array<std::uint32_t, 4> counts{};
   std::array<float, 4> paths{};
   const float* path = results[outputs_] + at;
-  std::array<std::uint8_t, first_look> regions{};
+  std::array<std::uint8_t, corner_look> regions{};
   for (std::uint32_t k = 0; k < look; ++k) {
     const std::uint8_t region = regions[k] = corner.region(offsets.x[k], offsets.y[k]);
     if (region == Corner::unsure) continue;
@@ -142,86 +138,85 @@ bool Refiner::by_regions(const Unclear& pixel, std::uint32_t look, const Results
   return true;
 }
 
-// Narrow pixels join `unclear` where a few samples show what none of the pixels around does; the
-// others stay as they are.
-void Refiner::glance(const Tile& tile, const std::vector<Pixel>& narrow,
-                     std::vector<Unclear>& unclear, Work& work, RunStatus& status) const {
-  const std::uint32_t few = std::min(first_glance, count());
-  sample(narrow, 0, few, work, status, [&](std::size_t i, const Results& results, std::size_t at) {
-    for (std::size_t o = 0; o < outputs_; ++o) {
-      const float* middle = tile.planes[o] + tile.at(narrow[i].x, narrow[i].y);
-      Range around = range_of({middle - 1, 3});
-      for (const std::ptrdiff_t row : {-tile.area.width(), tile.area.width()}) {
-        const auto [low, high] = range_of({middle + row - 1, 3});
-        around = {smaller(low, around.low), larger(high, around.high)};
-      }
-      const auto [low, high] = range_of({results[o] + at, few});
-      if ((low < around.low && differ(low, around.low)) ||
-          (high > around.high && differ(high, around.high))) {
-        unclear.push_back({narrow[i]});
-        return;
-      }
-    }
-  });
+// Whether the samples of a pixel show what none of the pixels around it does.
+bool Refiner::shows_more(const Tile& tile, const Pixel& pixel, std::size_t output,
+                         const Range& range) {
+  const float* middle = tile.planes[output] + tile.at(pixel.x, pixel.y);
+  Range around = range_of({middle - 1, 3});
+  for (const std::ptrdiff_t row : {-tile.area.width(), tile.area.width()})
+    around = around.with(range_of({middle + row - 1, 3}));
+  return (range.low < around.low && differ(range.low, around.low)) ||
+         (range.high > around.high && differ(range.high, around.high));
 }
 
-// Pixels that turn out even after a first look are left at that, and those whose samples confirm
-// two edges are put together from their regions.
-void Refiner::settle(const std::vector<Unclear>& unclear, Refined& result, Work& work,
-                     RunStatus& status) const {
-  if (unclear.empty()) return;
-  const std::uint32_t count = this->count();
-  const std::uint32_t look = std::min(first_look, count);
-  const std::size_t start = result.pixels.size();
-  for (const Unclear& pixel : unclear) result.pixels.push_back(pixel.pixel);
-  for (auto& values : result.values) values.resize(result.pixels.size());
-  const std::vector<Pixel> pixels(result.pixels.begin() + static_cast<std::ptrdiff_t>(start),
-                                  result.pixels.end());
-
-  std::vector<Pixel> more;
-  std::vector<std::size_t> places;  // of these in the result, with the sums of the first look
+// Samples in steps, each as many as before it together. Narrow pixels whose first samples show
+// nothing stay as they are; those whose samples confirm two edges are put together from their
+// regions. Half of the samples are enough, but for outlines: theirs are long, and nothing else
+// smooths them.
+void Refiner::settle(const Tile& tile, const std::vector<Unclear>& unclear, Refined& result,
+                     Counts& counts, Work& work, RunStatus& status) const {
+  const std::uint32_t count = this->count(), look = std::min(corner_look, count);
+  std::vector<float> sums(unclear.size() * outputs_);
+  std::vector<Range> ranges(sums.size());
+  std::vector<std::size_t> open(unclear.size());
+  std::iota(open.begin(), open.end(), std::size_t{0});
   std::vector<float> values(outputs_);
-  sample(pixels, 0, look, work, status, [&](std::size_t i, const Results& results, std::size_t at) {
-    bool unsettled = false;
-    for (std::size_t o = 0; o < outputs_; ++o) {
-      const std::span<const float> seen(results[o] + at, look);
-      result.values[o][start + i] = sum_of(seen);
-      unsettled = unsettled || is_uneven(seen);
+  const auto done = [&](std::size_t i, const float* of, float number) {
+    result.pixels.push_back(unclear[i].pixel);
+    for (std::size_t o = 0; o < outputs_; ++o) result.values[o].push_back(of[o] / number);
+    ++counts.supersampled;
+  };
+
+  std::vector<std::size_t> kept, now;
+  std::vector<Pixel> pixels;
+  // The samples [first, last) of the pixels `now`; those that need more are kept.
+  const auto step = [&](std::uint32_t first, std::uint32_t last) {
+    pixels.clear();
+    for (const std::size_t i : now) pixels.push_back(unclear[i].pixel);
+    sample(pixels, first, last, work, status,
+           [&](std::size_t k, const Results& results, std::size_t at) {
+             const std::size_t i = now[k];
+             const Pixel& pixel = unclear[i].pixel;
+             float* sum = &sums[i * outputs_];
+             bool uneven = false, more = !pixel.narrow;
+             for (std::size_t o = 0; o < outputs_; ++o) {
+               const std::span<const float> seen(results[o] + at, last - first);
+               sum[o] += sum_of(seen);
+               Range& range = ranges[i * outputs_ + o];
+               range = first == 0 ? range_of(seen) : range.with(range_of(seen));
+               uneven = uneven || is_uneven(range, last);
+               more = more || first > 0 || shows_more(tile, pixel, o, range);
+             }
+             if (!more) return;
+             const std::uint32_t most = pixel.silhouette ? count : std::max(look, count / 2);
+             if (!uneven || last >= most)
+               done(i, sum, static_cast<float>(last));
+             else if (first == 0 && last == look &&
+                      by_regions(unclear[i], look, results, at, values))
+               done(i, values.data(), 1);
+             else
+               kept.push_back(i);
+           });
+  };
+  const float reach = options_.filter.reach();
+  std::uint32_t taken = 0;
+  for (std::uint32_t next = std::min(first_look, look); !open.empty() && !status.stopped();
+       next = std::min(2 * next, count)) {
+    kept.clear();
+    // The samples of two edges are looked at together.
+    std::vector<std::size_t> later;
+    for (const bool corners : {false, true}) {
+      now.clear();
+      for (const std::size_t i : open)
+        if (next > look ? !corners : unclear[i].lines.are_within(reach) == corners) now.push_back(i);
+      if (corners && next < look)
+        later = now;
+      else if (!now.empty())
+        step(corners ? 0 : taken, next);
     }
-    if (unsettled && look < count) {
-      if (!by_regions(unclear[i], look, results, at, values)) {
-        more.push_back(pixels[i]);
-        places.push_back(start + i);
-        return;
-      }
-      for (std::size_t o = 0; o < outputs_; ++o) result.values[o][start + i] = values[o];
-    } else {
-      for (std::size_t o = 0; o < outputs_; ++o)
-        result.values[o][start + i] /= static_cast<float>(look);
-    }
-  });
-  // Half of the samples are enough, but for outlines: theirs are long, and nothing else smooths
-  // them.
-  std::uint32_t taken = look;
-  for (const std::uint32_t next : {std::max(look, count / 2), count}) {
-    if (next > taken)
-      sample(more, taken, next, work, status,
-             [&](std::size_t i, const Results& results, std::size_t at) {
-               for (std::size_t o = 0; o < outputs_; ++o)
-                 result.values[o][places[i]] += sum_of({results[o] + at, next - taken});
-             });
+    open = kept;
+    open.insert(open.end(), later.begin(), later.end());
     taken = next;
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < more.size(); ++i) {
-      if (next < count && more[i].silhouette) {
-        more[kept] = more[i], places[kept] = places[i];
-        ++kept;
-        continue;
-      }
-      for (std::size_t o = 0; o < outputs_; ++o)
-        result.values[o][places[i]] /= static_cast<float>(taken);
-    }
-    more.resize(kept), places.resize(kept);
   }
 }
 

@@ -106,7 +106,19 @@ void Shader::make_module() {
   }
   alpha_output_ = first[alpha];
   path_output_ = module.outputs.size();
+  const auto number_of = [](const Part& part, const char* name) {
+    const auto& own = part.program->module().outputs;
+    const auto found = std::ranges::find(own, name, &ir::Output::name);
+    return found == own.end() ? none : static_cast<std::size_t>(found - own.begin());
+  };
+  has_ends_ = has_paths_ && std::ranges::any_of(parts_, [&](const Part& part) {
+                return number_of(part, antialias::ends_name) != none;
+              });
   if (has_paths_) module.outputs.push_back({antialias::path_name});
+  if (has_ends_) {
+    module.outputs.push_back({antialias::way_name});
+    module.outputs.push_back({antialias::ends_name});
+  }
   split_->first_slot = 0;
 
   // What is read, and where each program finds it.
@@ -131,8 +143,15 @@ void Shader::make_module() {
             part.outputs_of[o].push_back(first[joined] + static_cast<std::size_t>(c));
       }
     }
-    if (has_paths_ && !own.outputs.empty() && own.outputs.back().name == antialias::path_name)
-      part.outputs_of.back().push_back(path_output_);
+    if (const std::size_t path = number_of(part, antialias::path_name); path != none) {
+      part.outputs_of[path].push_back(path_output_);
+      const std::size_t ends = number_of(part, antialias::ends_name);
+      // Where a program has no searches its paths are the ways.
+      if (has_ends_)
+        part.outputs_of[ends == none ? path : number_of(part, antialias::way_name)].push_back(
+            path_output_ + 1);
+      if (ends != none) part.outputs_of[ends].push_back(path_output_ + 2);
+    }
     part.first_check = static_cast<std::int32_t>(module.checks.size());
     module.checks.insert(module.checks.end(), own.checks.begin(), own.checks.end());
   }
@@ -212,11 +231,11 @@ void Shader::run_samples(const FrameState&, RunStatus& status, Scratch&,
   for (std::size_t k = 0; k < parts_.size(); ++k)
     if (!room.of_part[k].empty()) run_part(k, status, inputs, outputs, count, room);
   if (!has_paths_) return;
-  float* path = outputs[path_output_];
-  for (std::int64_t i = 0; i < count; ++i) {
-    const auto id = static_cast<std::uint32_t>(ids[i] * 0x9e3779p0f);
-    path[i] = static_cast<float>((static_cast<std::uint32_t>(path[i]) + id) & 0xffffffu);
-  }
+  for (float* path : std::span(outputs + path_output_, has_ends_ ? 2 : 1))
+    for (std::int64_t i = 0; i < count; ++i) {
+      const auto id = static_cast<std::uint32_t>(ids[i] * 0x9e3779p0f);
+      path[i] = static_cast<float>((static_cast<std::uint32_t>(path[i]) + id) & 0xffffffu);
+    }
 }
 
 void Shader::run_part(std::size_t k, RunStatus& status, const float* const* inputs,

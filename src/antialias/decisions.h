@@ -25,6 +25,8 @@ struct Decisions {
   std::vector<bool> forks;     // jumps, and min and max: a steep clamp is an edge to the eye
   std::vector<bool> bends;     // abs where some jump depends on it: it bends an edge
   std::vector<bool> dithered;  // what depends on px and py: none of these is an edge
+  std::vector<bool> searched;  // the conditions of loops that search
+  std::vector<bool> ends;      // the results of these that are used
   bool any = false;            // whether there is a fork
   bool any_jump = false;
 
@@ -34,7 +36,19 @@ struct Decisions {
     const ir::Value by = in.op == ir::Op::if_ ? in.operands[0] : in.regions[0].yields[0];
     return by < dithered.size() && dithered[by];
   }
+
+  // Whether a loop searches, as a ray's march does: it turns differently often from sample to
+  // sample, but nothing that it ends with counts the turns. Ending a turn earlier or later is no
+  // edge then; ending elsewhere is.
+  bool is_search(const ir::Instruction& in) const {
+    if (in.op != ir::Op::loop) return false;
+    const ir::Value by = in.regions[0].yields[0];
+    return by < searched.size() && searched[by];
+  }
 };
+
+// Leaves out the decisions within searches: they are of the way there, not of the end.
+void leave_out_searches(const ir::Region& region, Decisions& decisions);
 
 // Gives the module's values their rates, and finds the decisions.
 Decisions find_decisions(ir::Module& module);

@@ -87,6 +87,7 @@ std::vector<passes::SlopesOfInput> slopes_of_inputs(const ir::Module& module,
 
 void derive_edges(ir::Module& module, const Decisions& found, const InputChanges& changes) {
   Decisions decisions = found;
+  leave_out_searches(module.main().body, decisions);
   // Loops' heads are copied behind and into the loops, so that the edges that they decide count.
   rotate_loops(module.main(), decisions);
   EdgeWatcher watcher(decisions);

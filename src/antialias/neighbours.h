@@ -6,6 +6,7 @@
 #pragma once
 
 #include "antialias/lanes.h"
+#include "antialias/path.h"
 #include "antialias/search.h"
 
 namespace pse::antialias {
@@ -45,7 +46,7 @@ struct Jumps {
 
 // What is seen of eight pixels.
 struct Seen {
-  Answers edge{}, silhouette{}, narrow{}, crowded{};
+  Answers edge{}, silhouette{}, narrow{}, untold{};
 };
 
 // Looks at all pixels whose columns and rows are within `reach`.
@@ -57,7 +58,7 @@ class Search {
         room_(room),
         width_(tile.area.width()),
         samples_(width_ * tile.area.height()),
-        way_(tile.way()),
+        path_(tile.path()),
         ends_(tile.ends()) {
     std::ptrdiff_t* step = steps_;
     for (std::ptrdiff_t dx = 1; dx <= reach; ++dx) *step++ = dx;
@@ -82,7 +83,7 @@ class Search {
         const int x = tile_.rect.x0 + static_cast<int>(i);
         const int count = static_cast<int>(width - i < 8 ? width - i : 8);
         for (int k = 0; k < count; ++k) {
-          *next = {x + k, y, seen.silhouette[k] != 0, seen.edge[k] == 0, seen.crowded[k] != 0};
+          *next = {x + k, y, seen.silhouette[k] != 0, seen.edge[k] == 0, seen.untold[k] != 0};
           next -= wanted[k];
         }
       }
@@ -96,11 +97,11 @@ class Search {
     return ~(size(load<Eight>(ends_ + there) - load<Eight>(ends_ + here)) <= least_end);
   }
   [[gnu::always_inline]] Answers changes(std::ptrdiff_t here, std::ptrdiff_t there) const {
-    const Answers change = load<Answers>(way_ + here) ^ load<Answers>(way_ + there);
+    const Answers change = load<Answers>(path_ + here) ^ load<Answers>(path_ + there);
     return ends_ == nullptr ? change : change | end_apart(here, there);
   }
 
-  // For all samples of the area: not 0 where the way changes along the row within reach.
+  // For all samples of the area: not 0 where the path changes along the row within reach.
   [[gnu::always_inline]] void see_changes_along_rows() const {
     for (std::ptrdiff_t i = reach; i + reach < samples_; i += eight) {
       Answers change{};
@@ -109,7 +110,7 @@ class Search {
     }
   }
 
-  // For the samples of a row: not 0 where the way changes within reach. Whether there is any.
+  // For the samples of a row: not 0 where the path changes within reach. Whether there is any.
   [[gnu::always_inline]] bool see_changes(std::ptrdiff_t first, std::ptrdiff_t count,
                                           std::int32_t* changes) const {
     Answers any_change{};
@@ -132,7 +133,7 @@ class Search {
     seen.edge = Answers{};
     for (const std::ptrdiff_t step : steps_) look_along(seen, here, step);
     seen.narrow &= ~seen.edge;
-    if (any(seen.edge)) seen.crowded = is_crowded(here);
+    if (any(seen.edge)) seen.untold |= is_crowded(here);
     return seen;
   }
 
@@ -156,30 +157,32 @@ class Search {
 
   // Whether more than one decision falls differently (path.cpp).
   [[gnu::always_inline]] Answers leap(std::ptrdiff_t here, std::ptrdiff_t there) const {
-    const Eight a = load<Eight>(way_ + here), b = load<Eight>(way_ + there);
-    const Answers apart = (whole(a) - whole(b)) & 1023, steps = apart & 7;
+    const Eight a = load<Eight>(path_ + here), b = load<Eight>(path_ + there);
+    const Answers apart = (whole(a) - whole(b)) & ((1 << bits_of_jumps) - 1), steps = apart & 7;
     return (apart != 0) & (steps != 1) & (steps != 7);
   }
 
   // Whether too few of the eight pixels around go the same way for one or two edges to part them.
   [[gnu::always_inline]] Answers is_crowded(std::ptrdiff_t here) const {
     constexpr int least_alike = 2;
-    const Answers way = load<Answers>(way_ + here);
+    const Answers way = load<Answers>(path_ + here);
     Answers alike{};
     for (const std::ptrdiff_t step : {std::ptrdiff_t{1}, width_ - 1, width_, width_ + 1})
-      alike += (load<Answers>(way_ + here + step) == way) + (load<Answers>(way_ + here - step) == way);
+      alike +=
+          (load<Answers>(path_ + here + step) == way) + (load<Answers>(path_ + here - step) == way);
     return alike > -least_alike;
   }
 
   // At the two neighbours `step` before and behind each.
   [[gnu::always_inline]] void look_along(Seen& seen, std::ptrdiff_t here,
                                          std::ptrdiff_t step) const {
-    const Answers way = load<Answers>(way_ + here);
-    Answers ahead = load<Answers>(way_ + here + step) != way;
-    Answers back = load<Answers>(way_ + here - step) != way;
+    const Answers way = load<Answers>(path_ + here);
+    Answers ahead = load<Answers>(path_ + here + step) != way;
+    Answers back = load<Answers>(path_ + here - step) != way;
+    Jumps ends{};
     if (ends_ != nullptr) {
-      const Jumps ends = jumps(load<Eight>(ends_ + here), load<Eight>(ends_ + here + step),
-                               load<Eight>(ends_ + here - step), Eight{} + least_end);
+      ends = jumps(load<Eight>(ends_ + here), load<Eight>(ends_ + here + step),
+                   load<Eight>(ends_ + here - step), Eight{} + least_end);
       ahead |= ends.ahead, back |= ends.back;
     }
     Answers jumps_ahead{}, jumps_back{};
@@ -192,6 +195,7 @@ class Search {
       jumps_back |= back & found.back;
     }
     seen.edge |= jumps_ahead | jumps_back;
+    seen.untold |= (jumps_ahead & ends.ahead) | (jumps_back & ends.back);
     if (tile_.ids == nullptr) return;
     const float* id = tile_.ids + here;
     const Eight object = load<Eight>(id);
@@ -202,8 +206,8 @@ class Search {
   const Tile& tile_;
   const SearchRoom& room_;
   const std::ptrdiff_t width_, samples_;
-  const float* const way_;
-  const float* const ends_;  // null: there are none
+  const float* const path_;
+  const float* const ends_;                        // null: there are none
   std::ptrdiff_t steps_[2 * reach * (reach + 1)];  // to one of each two opposite neighbours
 };
 

@@ -1,17 +1,17 @@
 // The path is a sum of a random number for each outcome, so order does not matter between
-// decisions; every turn of a loop multiplies what it adds to. All these numbers are 1 more than a
-// multiple of 8, so paths also count: one step at one decision changes them by 1 modulo 8.
+// decisions; every turn of a loop multiplies what it adds to. Numbers of jumps are 1 more than a
+// multiple of 8, so paths also count: one step at one jump changes them by 1 modulo 8. Numbers of
+// bends leave the lower bits as they are.
 //
 // A loop that searches, a ray's march above all, turns differently often at every pixel and yet
 // ends in the same place: its turns are no ways of their own. Its last turn tells what it has met,
 // and what it ends with jumps where it meets something else. (The 2002 chapter has no loops.)
 #include "antialias/path.h"
 
-#include <algorithm>
 #include <array>
+#include <span>
 
 #include "passes/emit.h"
-#include "passes/rewrite.h"
 
 namespace pse::antialias {
 namespace {
@@ -26,55 +26,14 @@ using passes::Emit;
 
 // What is carried along through the program.
 struct Way {
-  Value way;    // the outcomes so far; of searching loops those of the last turn
-  Value turns;  // all turns of searching loops
-  Value ends;   // the sum of what these ended with; no_value inside of them
+  Value path;
+  Value ends;  // the sum of what searches ended with; no_value inside of them
 };
-
-bool stores(const Region& region) {
-  for (const Instruction& in : region.body) {
-    if (passes::writes_array(in.op)) return true;
-    for (const Region& inner : in.regions)
-      if (stores(inner)) return true;
-  }
-  return false;
-}
-
-// Whether a turn makes `before` into `after` by adding a step to it, or leaves it: a count of turns.
-bool counts(const Function& function, const Region& body, Value after, Value before) {
-  if (after == before) return true;
-  for (const Instruction& in : body.body) {
-    const auto at = std::ranges::find(in.results, after);
-    if (at == in.results.end()) continue;
-    if (in.op == Op::fadd || in.op == Op::iadd)
-      return (in.operands[0] == before && function.values[in.operands[1]].rate != ir::Rate::sample) ||
-             (in.operands[1] == before && function.values[in.operands[0]].rate != ir::Rate::sample);
-    if (in.op != Op::if_) return false;
-    const auto k = static_cast<std::size_t>(at - in.results.begin());
-    return std::ranges::all_of(in.regions, [&](const Region& region) {
-      return counts(function, region, region.yields[k], before);
-    });
-  }
-  return false;
-}
-
-void find_uses(const Region& region, std::vector<bool>& used) {
-  const auto use = [&](const std::vector<Value>& values) {
-    for (const Value value : values) used[value] = true;
-  };
-  for (const Instruction& in : region.body) {
-    use(in.operands);
-    for (const Region& inner : in.regions) find_uses(inner, used);
-  }
-  use(region.yields);
-}
 
 class Paths {
  public:
   Paths(Function& function, const Decisions& decisions)
-      : function_(function), decisions_(decisions), used_(function.values.size()) {
-    find_uses(function.body, used_);
-  }
+      : function_(function), decisions_(decisions) {}
 
   bool has_searches() const { return has_searches_; }
 
@@ -83,30 +42,29 @@ class Paths {
     std::vector<Instruction> out;
     out.reserve(region.body.size() * 2);
     for (Instruction& in : region.body) {
-      if (in.op == Op::if_) {
+      const bool searches = decisions_.is_search(in);
+      if (in.op == Op::if_)
         way = branch(in, way);
-        out.push_back(std::move(in));
-      } else if (in.op == Op::loop) {
-        const bool searches = is_search(in);
-        way = searches ? search(in, way) : turn(in, way);
-        out.push_back(std::move(in));
-        if (searches && way.ends != no_value)
-          way.ends = with_ends(Emit(function_, out), Instruction(out.back()), way.ends);
-      } else {
-        const bool jumps = in.results.size() == 1 && in.result() < decisions_.forks.size() &&
-                           decisions_.forks[in.result()];
-        out.push_back(std::move(in));
-        if (jumps) way.way = outcome(Emit(function_, out), Instruction(out.back()), way.way);
-      }
+      else if (searches)
+        way.path = search(in, way.path);
+      else if (in.op == Op::loop)
+        way = turn(in, way);
+      out.push_back(std::move(in));
+      const Instruction& written = out.back();
+      const bool jumps = written.results.size() == 1 &&
+                         written.result() < decisions_.forks.size() &&
+                         decisions_.forks[written.result()];
+      if (searches && way.ends != no_value)
+        way.ends = with_ends(Emit(function_, out), std::vector(written.results), way.ends);
+      else if (jumps)
+        way.path = outcome(Emit(function_, out), Instruction(written), way.path);
     }
     region.body = std::move(out);
     return way;
   }
 
  private:
-  // Bends leave the lower bits.
-  static constexpr int bend_bits = 10;
-  static constexpr std::array parts = {&Way::way, &Way::turns, &Way::ends};
+  static constexpr std::array parts = {&Way::path, &Way::ends};
 
   // A random number, 1 modulo 8.
   std::int32_t next_factor() {
@@ -120,7 +78,7 @@ class Paths {
   Value outcome(const Emit& emit, const Instruction& in, Value path) {
     const Cut cut = cut_of(in.op);
     const std::int32_t number = next_factor();
-    const Value factor = emit.integer(cut == Cut::kink ? number << bend_bits : number);
+    const Value factor = emit.integer(cut == Cut::kink ? number << bits_of_jumps : number);
     if (cut == Cut::compare || cut == Cut::kink) {
       const Value is_first =
           cut == Cut::compare ? in.result() : emit.less(in.operands[0], in.operands[1]);
@@ -138,7 +96,7 @@ class Paths {
       if (yes.*part == before.*part && no.*part == before.*part) continue;
       in.regions[0].yields.push_back(yes.*part);
       in.regions[1].yields.push_back(no.*part);
-      in.results.push_back(function_.add_value(function_.values[yes.*part].type));
+      in.results.push_back(function_.add_value(function_.values[before.*part].type));
       after.*part = in.results.back();
     }
     return after;
@@ -157,85 +115,56 @@ class Paths {
     return in.results.back();
   }
 
-  // A loop that turns equally often everywhere, or one of whose turns any may be seen.
+  // A loop each of whose turns may be seen.
   Way turn(Instruction& in, Way before) {
     if (decisions_.is_dither(in)) return before;
     Region& body = in.regions[1];
-    const std::size_t own = body.params.size();
+    std::size_t k = body.params.size();
     Way within = before;
     for (const auto part : parts)
-      if (before.*part != no_value)
-        within.*part = carry(in, function_.values[before.*part].type);
-    const Way after = walk(body, within);
+      if (before.*part != no_value) within.*part = carry(in, function_.values[before.*part].type);
+    Way after = walk(body, within), result = before;
     const bool differs = function_.values[in.regions[0].yields[0]].rate == ir::Rate::sample;
-    Way result = before;
-    std::size_t k = own;
+    if (differs || after.path != within.path) {
+      const Emit emit(function_, body.body);
+      const Value mixed = emit(Op::imul, {after.path, emit.integer(next_factor())});
+      after.path = emit(Op::iadd, {mixed, emit.integer(next_factor())});
+    }
     for (const auto part : parts) {
       if (before.*part == no_value) continue;
-      const bool is_way = part == &Way::way;
-      if (after.*part == within.*part && !(is_way && differs)) {
+      if (after.*part == within.*part) {
         for (Region& region : in.regions)
           region.params.erase(region.params.begin() + static_cast<std::ptrdiff_t>(k));
         continue;
       }
-      const Emit emit(function_, body.body);
-      Value next = after.*part;
-      if (is_way) {
-        const Value mixed = emit(Op::imul, {next, emit.integer(next_factor())});
-        next = emit(Op::iadd, {mixed, emit.integer(next_factor())});
-      } else if (part == &Way::turns) {
-        next = emit(Op::imul, {next, emit.integer(next_factor())});
-      }
-      result.*part = finish(in, before.*part, next);
+      result.*part = finish(in, before.*part, after.*part);
       ++k;
     }
     return result;
   }
 
-  bool is_search(const Instruction& in) const {
-    return !decisions_.is_dither(in) &&
-           function_.values[in.regions[0].yields[0]].rate == ir::Rate::sample &&
-           !stores(in.regions[0]) && !stores(in.regions[1]);
+  // A loop that searches: every turn's path begins anew.
+  Value search(Instruction& in, Value before) {
+    const Value after = walk(in.regions[1], {before, no_value}).path;
+    if (after == before) return before;
+    carry(in, ir::Type::i32);
+    return finish(in, before, after);
   }
 
-  // Every turn's way begins anew.
-  Way search(Instruction& in, Way before) {
+  // The sum with what a search ends with.
+  Value with_ends(const Emit& emit, const std::vector<Value>& results, Value sum) {
     has_searches_ = true;
-    Region& body = in.regions[1];
-    const Value turns = carry(in, ir::Type::i32);
-    const Way after = walk(body, {before.way, turns, no_value});
-    const Emit emit(function_, body.body);
-    const Value of_turn = emit(Op::isub, {after.way, before.way});
-    const Value mixed = emit(Op::imul, {after.turns, emit.integer(next_factor())});
-    const Value sum = emit(Op::iadd, {mixed, of_turn});
-    Way result = before;
-    result.turns =
-        finish(in, before.turns, emit(Op::iadd, {sum, emit.integer(next_factor())}));
-    if (after.way != before.way) {
-      carry(in, ir::Type::i32);
-      result.way = finish(in, before.way, after.way);
-    }
-    return result;
-  }
-
-  // The sum with what a search ends with and is used.
-  Value with_ends(const Emit& emit, const Instruction& search, Value sum) {
-    const Region& body = search.regions[1];
-    for (std::size_t k = 0; k < search.results.size(); ++k) {
-      const Value end = search.results[k];
-      if (end >= used_.size() || !used_[end]) continue;
-      const ir::Type type = function_.values[end].type;
+    for (const Value end : results) {
+      if (end >= decisions_.ends.size() || !decisions_.ends[end]) continue;
       // 1 to 2, so that no two ends make up for each other.
-      const float weight = 1 + static_cast<float>(next_factor() & 0xfff0) * 0x1p-16f;
+      const Value weight = emit.number(1 + static_cast<float>(next_factor() & 0xfff0) * 0x1p-16f);
+      const ir::Type type = function_.values[end].type;
       if (type == ir::Type::boolean) {
-        const Value one = emit.number(weight);
-        sum = emit.add(sum, emit.choose(end, one, emit.number(0)));
-        continue;
+        sum = emit.add(sum, emit.choose(end, weight, emit.number(0)));
+      } else {
+        const Value value = type == ir::Type::i32 ? emit(Op::i2f, {end}) : end;
+        sum = emit(Op::fma, {size(emit, value), weight, sum});
       }
-      const Value value = type == ir::Type::i32 ? emit(Op::i2f, {end}) : end;
-      const bool is_count = counts(function_, body, body.yields[k], body.params[k]);
-      const Value seen = is_count ? value : size(emit, value);
-      sum = emit(Op::fma, {seen, emit.number(weight), sum});
     }
     return sum;
   }
@@ -250,7 +179,6 @@ class Paths {
 
   Function& function_;
   const Decisions& decisions_;
-  std::vector<bool> used_;
   bool has_searches_ = false;
   std::uint32_t state_ = 1;
 };
@@ -278,34 +206,24 @@ bool has_checks(const ir::Module& module) {
   return false;
 }
 
-std::size_t add_path(ir::Module& module, const Decisions& decisions) {
+void add_path(ir::Module& module, const Decisions& decisions) {
   Function& main = module.main();
   std::vector<Instruction> start;
   const Emit first(main, start);
-  const Way none{first.integer(0), first.integer(0), first.number(0)};
+  const Way none{first.integer(0), first.number(0)};
   Paths paths(main, decisions);
   const Way way = paths.walk(main.body, none);
   main.body.body.insert(main.body.body.begin(), std::make_move_iterator(start.begin()),
                         std::make_move_iterator(start.end()));
   const Emit emit(main, main.body.body);
-  const auto give = [&](const char* name, Value value) {
-    main.body.yields.push_back(value);
-    module.outputs.push_back({name});
-  };
   // Floats hold whole numbers of 24 bits exactly.
-  const auto whole = [&](Value path) {
-    const Value high = emit(Op::ishl, {path, emit.integer(8)});
-    return emit(Op::i2f, {emit(Op::ishr, {high, emit.integer(8)})});
-  };
-  const std::size_t own = module.outputs.size();
-  if (!paths.has_searches()) {
-    give(path_name, whole(way.way));
-  } else {
-    give(path_name, whole(emit(Op::iadd, {way.way, way.turns})));
-    give(way_name, whole(way.way));
-    give(ends_name, way.ends);
-  }
-  return module.outputs.size() - own;
+  const Value high = emit(Op::ishl, {way.path, emit.integer(8)});
+  const Value low = emit(Op::ishr, {high, emit.integer(8)});
+  main.body.yields.push_back(emit(Op::i2f, {low}));
+  module.outputs.push_back({path_name});
+  if (!paths.has_searches()) return;
+  main.body.yields.push_back(way.ends);
+  module.outputs.push_back({ends_name});
 }
 
 void remove_checks(ir::Module& module) {

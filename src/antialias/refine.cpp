@@ -244,7 +244,7 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
   std::vector<Unclear> unclear;
   for (const Pixel& pixel : found) {
     // The program knows the edges within objects, not those of the objects.
-    if (pixel.silhouette || pixel.narrow || pixel.crowded || edges_ == nullptr)
+    if (pixel.silhouette || pixel.narrow || pixel.untold || edges_ == nullptr)
       unclear.push_back({pixel});
     else
       inner.push_back(pixel);

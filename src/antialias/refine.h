@@ -82,8 +82,7 @@ class Refiner {
               RunStatus& status, const Visit& visit) const;
   bool by_regions(const Unclear& pixel, std::uint32_t look, const Results& results, std::size_t at,
                   std::span<float> values) const;
-  static bool shows_more(const Tile& tile, const Pixel& pixel, std::size_t output,
-                         const Range& range);
+  static Range range_around(const Tile& tile, const Pixel& pixel, std::size_t output);
   void settle(const Tile& tile, const std::vector<Unclear>& unclear, Refined& result,
               Counts& counts, Work& work, RunStatus& status) const;
 

@@ -40,7 +40,6 @@ float sum_of(std::span<const float> values) {
   return total(sums, values.subspan(k));
 }
 
-
 Range range_of(std::span<const float> values) {
   Four lows = Four{} + values[0], highs = lows;
   std::size_t k = 0;
@@ -54,6 +53,12 @@ Range range_of(std::span<const float> values) {
   for (; k < values.size(); ++k)
     range = {smaller(values[k], range.low), larger(values[k], range.high)};
   return range;
+}
+
+// Whether some of what is in the range can be told from all that is in the other.
+bool exceeds(const Range& range, const Range& other) {
+  return (range.low < other.low && differ(range.low, other.low)) ||
+         (range.high > other.high && differ(range.high, other.high));
 }
 
 // Whether what `count` samples are spread over can be seen in their mean.
@@ -138,15 +143,13 @@ bool Refiner::by_regions(const Unclear& pixel, std::uint32_t look, const Results
   return true;
 }
 
-// Whether the samples of a pixel show what none of the pixels around it does.
-bool Refiner::shows_more(const Tile& tile, const Pixel& pixel, std::size_t output,
-                         const Range& range) {
+// What an output is at a pixel and the eight around it.
+Range Refiner::range_around(const Tile& tile, const Pixel& pixel, std::size_t output) {
   const float* middle = tile.planes[output] + tile.at(pixel.x, pixel.y);
   Range around = range_of({middle - 1, 3});
   for (const std::ptrdiff_t row : {-tile.area.width(), tile.area.width()})
     around = around.with(range_of({middle + row - 1, 3}));
-  return (range.low < around.low && differ(range.low, around.low)) ||
-         (range.high > around.high && differ(range.high, around.high));
+  return around;
 }
 
 // Samples in steps, each as many as before it together. Narrow pixels whose first samples show
@@ -173,30 +176,36 @@ void Refiner::settle(const Tile& tile, const std::vector<Unclear>& unclear, Refi
   const auto step = [&](std::uint32_t first, std::uint32_t last) {
     pixels.clear();
     for (const std::size_t i : now) pixels.push_back(unclear[i].pixel);
-    sample(pixels, first, last, work, status,
-           [&](std::size_t k, const Results& results, std::size_t at) {
-             const std::size_t i = now[k];
-             const Pixel& pixel = unclear[i].pixel;
-             float* sum = &sums[i * outputs_];
-             bool uneven = false, more = !pixel.narrow;
-             for (std::size_t o = 0; o < outputs_; ++o) {
-               const std::span<const float> seen(results[o] + at, last - first);
-               sum[o] += sum_of(seen);
-               Range& range = ranges[i * outputs_ + o];
-               range = first == 0 ? range_of(seen) : range.with(range_of(seen));
-               uneven = uneven || is_uneven(range, last);
-               more = more || first > 0 || shows_more(tile, pixel, o, range);
-             }
-             if (!more) return;
-             const std::uint32_t most = pixel.silhouette ? count : std::max(look, count / 2);
-             if (!uneven || last >= most)
-               done(i, sum, static_cast<float>(last));
-             else if (first == 0 && last == look &&
-                      by_regions(unclear[i], look, results, at, values))
-               done(i, values.data(), 1);
-             else
-               kept.push_back(i);
-           });
+    sample(
+        pixels, first, last, work, status,
+        [&](std::size_t k, const Results& results, std::size_t at) {
+          const std::size_t i = now[k];
+          const Pixel& pixel = unclear[i].pixel;
+          float* sum = &sums[i * outputs_];
+          bool uneven = false, more = !pixel.narrow || first > 0;
+          for (std::size_t o = 0; o < outputs_; ++o) {
+            const std::span<const float> seen(results[o] + at, last - first);
+            sum[o] += sum_of(seen);
+            Range& range = ranges[i * outputs_ + o];
+            range = first == 0 ? range_of(seen) : range.with(range_of(seen));
+            if (last > first_look) {
+              uneven = uneven || is_uneven(range, last);
+              continue;
+            }
+            // The first few may have missed what a neighbour shows.
+            const Range around = range_around(tile, pixel, o);
+            more = more || exceeds(range, around);
+            uneven = uneven || is_uneven(range.with(around), last);
+          }
+          if (!more) return;
+          const std::uint32_t most = pixel.silhouette ? count : std::max(look, count / 2);
+          if (!uneven || last >= most)
+            done(i, sum, static_cast<float>(last));
+          else if (first == 0 && last == look && by_regions(unclear[i], look, results, at, values))
+            done(i, values.data(), 1);
+          else
+            kept.push_back(i);
+        });
   };
   const float reach = options_.filter.reach();
   std::uint32_t taken = 0;
@@ -208,7 +217,8 @@ void Refiner::settle(const Tile& tile, const std::vector<Unclear>& unclear, Refi
     for (const bool corners : {false, true}) {
       now.clear();
       for (const std::size_t i : open)
-        if (next > look ? !corners : unclear[i].lines.are_within(reach) == corners) now.push_back(i);
+        if (next > look ? !corners : unclear[i].lines.are_within(reach) == corners)
+          now.push_back(i);
       if (corners && next < look)
         later = now;
       else if (!now.empty())

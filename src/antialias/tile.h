@@ -13,7 +13,7 @@ namespace pse::antialias {
 // Samples of `area`, which is `rect` and some pixels around it, in row-major order of `area`.
 struct Tile {
   Rect rect, area;
-  std::span<float* const> planes;  // the outputs; behind them the path, the way, and the ends
+  std::span<float* const> planes;  // the outputs; behind them the path, and the ends if any
   std::size_t outputs = 0;         // without these
   const float* ids = nullptr;      // of the objects that the samples show; null: there is but one
 
@@ -21,11 +21,9 @@ struct Tile {
     return static_cast<std::size_t>(y - area.y0) * static_cast<std::size_t>(area.width()) +
            static_cast<std::size_t>(x - area.x0);
   }
-  // path.h says what they are; where no loop searches, paths are the ways, and there are no ends.
+  // Of path.h. Ends are null where no loop searches.
   const float* path() const { return planes[outputs]; }
-  bool has_ends() const { return planes.size() > outputs + 1; }
-  const float* way() const { return has_ends() ? planes[outputs + 1] : path(); }
-  const float* ends() const { return has_ends() ? planes[outputs + 2] : nullptr; }
+  const float* ends() const { return planes.size() > outputs + 1 ? planes[outputs + 1] : nullptr; }
 };
 
 struct Pixel {
@@ -34,7 +32,9 @@ struct Pixel {
   // Nothing jumps, but more than one decision falls differently a pixel further: there may be
   // something in between that no sample has met.
   bool narrow = false;
-  bool crowded = false;  // hardly a neighbour goes the same way: more edges than can be told apart
+  // The program does not tell where the edges are: a search ends elsewhere, or hardly a neighbour
+  // goes the same way.
+  bool untold = false;
 };
 
 // Whether two values of an output look different; they do not where they are nearer than this.
@@ -56,10 +56,11 @@ struct Found {
   std::vector<Pixel> pixels;
 };
 
-// The pixels of tile.rect that have a neighbour whose way is another, or whose searches end
-// elsewhere, across which some output jumps: more than its slope on the near side explains; and those that are narrow. In row-major
-// order. Neighbours are the samples that an edge under the kernel separates from the pixel;
-// tile.area must reach apron_of() pixels around tile.rect. Depends on nothing but those samples.
+// The pixels of tile.rect that have a neighbour whose path is another, or whose searches end
+// elsewhere, across which some output jumps: more than its slope on the near side explains; and
+// those that are narrow. In row-major order. Neighbours are the samples that an edge under the
+// kernel separates from the pixel; tile.area must reach apron_of() pixels around tile.rect. Depends
+// on nothing but those samples.
 std::span<const Pixel> find_edge_pixels(const Tile& tile, const Filter& filter, Found& found);
 
 }  // namespace pse::antialias

@@ -100,8 +100,8 @@ void Shader::make_module() {
     if (outputs_[i].name == "color" || (outputs_[i].name == "colour" && !has_color_)) {
       has_color_ = true;
       for (std::size_t c = 0; c < 3; ++c)
-        color_outputs_[c] =
-            first[i] + std::min<std::size_t>(c, static_cast<std::size_t>(outputs_[i].components) - 1);
+        color_outputs_[c] = first[i] + std::min<std::size_t>(
+                                           c, static_cast<std::size_t>(outputs_[i].components) - 1);
     }
   }
   alpha_output_ = first[alpha];
@@ -111,14 +111,11 @@ void Shader::make_module() {
     const auto found = std::ranges::find(own, name, &ir::Output::name);
     return found == own.end() ? none : static_cast<std::size_t>(found - own.begin());
   };
-  has_ends_ = has_paths_ && std::ranges::any_of(parts_, [&](const Part& part) {
-                return number_of(part, antialias::ends_name) != none;
-              });
+  const bool has_ends = has_paths_ && std::ranges::any_of(parts_, [&](const Part& part) {
+                          return number_of(part, antialias::ends_name) != none;
+                        });
   if (has_paths_) module.outputs.push_back({antialias::path_name});
-  if (has_ends_) {
-    module.outputs.push_back({antialias::way_name});
-    module.outputs.push_back({antialias::ends_name});
-  }
+  if (has_ends) module.outputs.push_back({antialias::ends_name});
   split_->first_slot = 0;
 
   // What is read, and where each program finds it.
@@ -136,8 +133,7 @@ void Shader::make_module() {
       part.sets_alpha = part.sets_alpha || joined == alpha;
       for (int c = 0; c < outputs_[joined].components; ++c) {
         if (output.components > 1 && c >= output.components) break;
-        const std::string name =
-            component_name(output, output.components == 1 ? 0 : c);
+        const std::string name = component_name(output, output.components == 1 ? 0 : c);
         for (std::size_t o = 0; o < own.outputs.size(); ++o)
           if (own.outputs[o].name == name)
             part.outputs_of[o].push_back(first[joined] + static_cast<std::size_t>(c));
@@ -146,11 +142,7 @@ void Shader::make_module() {
     if (const std::size_t path = number_of(part, antialias::path_name); path != none) {
       part.outputs_of[path].push_back(path_output_);
       const std::size_t ends = number_of(part, antialias::ends_name);
-      // Where a program has no searches its paths are the ways.
-      if (has_ends_)
-        part.outputs_of[ends == none ? path : number_of(part, antialias::way_name)].push_back(
-            path_output_ + 1);
-      if (ends != none) part.outputs_of[ends].push_back(path_output_ + 2);
+      if (ends != none) part.outputs_of[ends].push_back(path_output_ + 1);
     }
     part.first_check = static_cast<std::int32_t>(module.checks.size());
     module.checks.insert(module.checks.end(), own.checks.begin(), own.checks.end());
@@ -210,9 +202,8 @@ void Shader::run_frame(FrameState& state, RunStatus& status) const {
   ready_ = true;
 }
 
-void Shader::run_samples(const FrameState&, RunStatus& status, Scratch&,
-                         const float* const* inputs, float* const* outputs,
-                         std::int64_t count) const {
+void Shader::run_samples(const FrameState&, RunStatus& status, Scratch&, const float* const* inputs,
+                         float* const* outputs, std::int64_t count) const {
   const CurrentRun running(status);
   const float* ids = inputs[id_input_];
   const Room::Held held;
@@ -231,11 +222,11 @@ void Shader::run_samples(const FrameState&, RunStatus& status, Scratch&,
   for (std::size_t k = 0; k < parts_.size(); ++k)
     if (!room.of_part[k].empty()) run_part(k, status, inputs, outputs, count, room);
   if (!has_paths_) return;
-  for (float* path : std::span(outputs + path_output_, has_ends_ ? 2 : 1))
-    for (std::int64_t i = 0; i < count; ++i) {
-      const auto id = static_cast<std::uint32_t>(ids[i] * 0x9e3779p0f);
-      path[i] = static_cast<float>((static_cast<std::uint32_t>(path[i]) + id) & 0xffffffu);
-    }
+  float* path = outputs[path_output_];
+  for (std::int64_t i = 0; i < count; ++i) {
+    const auto id = static_cast<std::uint32_t>(ids[i] * 0x9e3779p0f);
+    path[i] = static_cast<float>((static_cast<std::uint32_t>(path[i]) + id) & 0xffffffu);
+  }
 }
 
 void Shader::run_part(std::size_t k, RunStatus& status, const float* const* inputs,
@@ -293,8 +284,8 @@ void Shader::radiance(std::span<const Ray> rays, double begin_width, float* cons
   std::vector<Sighting> sightings;
   for (std::size_t i = 0; i < n; ++i) {
     const double t = hits[i].found() ? hits[i].t() : 1;
-    sightings.push_back({static_cast<std::uint32_t>(i), &rays[i],
-                         begin_width + lens_->pixel_angle() * t, t});
+    sightings.push_back(
+        {static_cast<std::uint32_t>(i), &rays[i], begin_width + lens_->pixel_angle() * t, t});
   }
   const ir::Module& module = split_->module;
   const auto count = static_cast<std::int64_t>(n);

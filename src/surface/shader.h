@@ -64,7 +64,7 @@ class Shader : public Kernel {
   std::shared_ptr<passes::SplitModule> split_;
   std::vector<ProgramOutput> outputs_;
   std::size_t id_input_ = 0, alpha_output_ = 0, path_output_ = 0;
-  bool has_paths_ = false, has_ends_ = false;
+  bool has_paths_ = false;
   std::array<std::size_t, 3> color_outputs_{};
   bool has_color_ = false;
 

@@ -22,7 +22,7 @@ int count_programs() {
 }
 
 TEST(Path, OutputsOfRandomProgramsKeepTheirBitsAndEdgesOfAllAreValid) {
-  int with_jumps = 0;
+  int with_jumps = 0, with_ends = 0;
   for (int seed = 0; seed < count_programs(); ++seed) {
     const pse::test::RandomProgram random(static_cast<std::uint64_t>(seed));
     CompiledFront front;
@@ -51,24 +51,37 @@ TEST(Path, OutputsOfRandomProgramsKeepTheirBitsAndEdgesOfAllAreValid) {
       const auto b = ir::interpret(path, path.entry, inputs, nullptr, 100000);
       ASSERT_EQ(static_cast<int>(a.outcome.end), static_cast<int>(b.outcome.end));
       if (a.outcome.end != ir::End::finished) continue;
-      ASSERT_EQ(a.results.size() + 1, b.results.size());
+      const std::size_t own = a.results.size();
+      const bool has_ends = path.outputs.back().name == ends_name;
+      with_ends += has_ends ? 1 : 0;
+      ASSERT_EQ(own + (has_ends ? 2 : 1), b.results.size());
       EXPECT_TRUE(std::equal(a.results.begin(), a.results.end(), b.results.begin()))
           << random.text();
-      const float value = ir::to_f32(b.results.back());
+      const float value = ir::to_f32(b.results[own]);
+      EXPECT_TRUE(!has_ends || std::isfinite(ir::to_f32(b.results.back()))) << random.text();
       EXPECT_TRUE(value >= 0 && value < 16777216 && value == std::floor(value));
     }
   }
   EXPECT_GT(with_jumps, count_programs() / 4);
+  EXPECT_GT(with_ends, 0);
 }
 
-float path_at(const std::string& text, float x) {
+struct Way {
+  float path, ends;
+};
+
+// ends: 0 where the program has none.
+Way way_at(const std::string& text, float x) {
   CompiledFront front = test::lowered(text);
   passes::remove_dead(front.module);
   const Decisions decisions = find_decisions(front.module);
+  const std::size_t own = front.module.outputs.size();
   add_path(front.module, decisions);
-  std::vector<float> inputs(front.module.inputs.size(), x);
-  return ir::to_f32(ir::interpret(front.module, front.module.entry, inputs).results.back());
+  const std::vector<float> inputs(front.module.inputs.size(), x);
+  const auto results = ir::interpret(front.module, front.module.entry, inputs).results;
+  return {ir::to_f32(results[own]), results.size() > own + 1 ? ir::to_f32(results[own + 1]) : 0};
 }
+float path_at(const std::string& text, float x) { return way_at(text, x).path; }
 
 TEST(Path, DiffersWhereAnOutcomeDiffers) {
   for (const auto& [text, a, b] :
@@ -85,6 +98,56 @@ TEST(Path, DiffersWhereAnOutcomeDiffers) {
   // Outcomes that swap between turns are another path.
   const char* swapped = "c = 0\nfor i in [1 .. 2]\n    if (x - 1.5) * (i - 1.5) > 0\n        c += i\n";
   EXPECT_NE(path_at(swapped, 1), path_at(swapped, 2));
+}
+
+// A ray from (x, 0) along y to a disc of radius 2 around (0, 4), or to a wall behind it.
+const std::string march = R"(
+function scene(p)
+    return min(norm(p - [0 4]) - 2, 9 - p.y)
+t = 0
+for i in [1 .. 200]
+    d = scene([x t])
+    t += d
+    if d < 0.0001 break
+c = t
+)";
+
+TEST(Path, SearchesCountByWhatTheyEndWith) {
+  // Of the disc, whose distance is 4 - sqrt(4 - x^2): 2 and 2.2679; the turns differ.
+  const Way middle = way_at(march, 0), beside = way_at(march, 1);
+  EXPECT_EQ(middle.path, beside.path);
+  EXPECT_GT(middle.ends, 0);
+  // The piecewise logarithm of 1 + t grows by (3.2679 - 3) / 2, times a weight from 1 to 2.
+  const float growth = beside.ends - middle.ends;
+  EXPECT_GT(growth, 0.133f);
+  EXPECT_LT(growth, 0.269f);
+  // The wall: another outcome of the last turn, and ends that jump, from 1 + 4 to 1 + 9.
+  const Way hit = way_at(march, 1.999f), miss = way_at(march, 2.001f);
+  EXPECT_NE(hit.path, miss.path);
+  EXPECT_GT(miss.ends - hit.ends, 0.9f);
+}
+
+TEST(Path, ALoopWhoseTurnsAreCountedIsNoSearch) {
+  for (const char* text : {"c = x\nwhile c < 9\n    c += 1\n",
+                           "z = x\nc = 0\nwhile z < 9\n    z *= 1.5\n    c += 1\n",
+                           "z = x\nc = 0\nfor i in [1 .. 50]\n    z *= 1.5\n    c = i\n"
+                           "    if z > 9 break\n",
+                           // What stands in an array is not among what it ends with.
+                           "_a = array(20)\n_z = x\n_i = 0\nwhile _z < 9\n    _i += 1\n"
+                           "    _a[_i] = _z\n    _z *= 1.5\nc = _a[2] + _z\n"}) {
+    EXPECT_EQ(way_at(text, 2.5f).ends, 0) << text;
+    EXPECT_NE(path_at(text, 2.5f), path_at(text, 6.5f)) << text;
+  }
+  // Nothing of it is seen but where it ends.
+  EXPECT_NE(way_at("z = x\nwhile z < 9\n    z *= 1.5\nc = z\n", 2.5f).ends, 0);
+}
+
+TEST(Path, BendsLeaveTheBitsOfJumps) {
+  constexpr int jumps = (1 << bits_of_jumps) - 1;
+  const auto bits = [](const char* text, float x) { return int(path_at(text, x)) & jumps; };
+  EXPECT_EQ(bits("c = max(x, 1)\n", 0), bits("c = max(x, 1)\n", 2));
+  EXPECT_NE(path_at("c = max(x, 1)\n", 0), path_at("c = max(x, 1)\n", 2));
+  EXPECT_NE(bits("c = select(x < 1, 2, 3)\n", 0), bits("c = select(x < 1, 2, 3)\n", 2));
 }
 
 }  // namespace

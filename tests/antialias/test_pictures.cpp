@@ -143,6 +143,55 @@ TEST(Pictures, WhatHasNoEdgesIsLeftAlone) {
 }
 
 // Two stripes in each pixel, and every middle is on a white one.
+// A ring that hides part of itself, seen by rays that march and shaded by its depth: no conditional
+// but the march tells one part from the other. `paint` is done to the colour c at p.
+std::string marched(const std::string& paint) {
+  return R"(function scene(p)
+    q = p - [0 0 6]
+    r = [q.x, .92 * q.y - .392 * q.z, .392 * q.y + .92 * q.z]
+    return norm([norm([r.x, r.z]) - 1.15, r.y]) - .5
+_d = direction([2 * u - 1, 2 * v - 1, 3])
+_t = 3
+for _i in [1 .. 100]
+    _s = scene(_t * _d)
+    _t += _s
+    if _s < 0.0005 or _t > 9 break
+_p = min(_t, 9) * _d
+c = _t > 9 ? 0 : .9 - .25 * (_t - 4)
+)" + paint;
+}
+Picture marched(const std::string& paint, const Options& options) {
+  return render(marched(paint), {.width = 96, .height = 96, .antialias = options});
+}
+
+TEST(Pictures, MarchedOutlinesAreSeenAndNothingElse) {
+  const Picture ours = marched("", procedural()), plainly = marched("", plain()),
+                many = marched("", samples(256));
+  EXPECT_LT(distance(ours, many), 0.15 * distance(plainly, many));
+  // The outlines are some 350 pixels long, and the kernel reaches over four.
+  EXPECT_GT(ours.counts.filtered, 500);
+  EXPECT_LT(ours.counts.filtered, 1500);
+  // Where it hides itself only the depth jumps.
+  double worst = 0, without = 0;
+  for (int y = 42; y < 51; ++y)
+    for (int x = 38; x < 58; ++x) {
+      worst = std::max(worst, std::abs(double(ours.at(x, y)) - many.at(x, y)));
+      without = std::max(without, std::abs(double(plainly.at(x, y)) - many.at(x, y)));
+    }
+  EXPECT_LT(worst, 0.1 * without);
+  EXPECT_GT(without, 0.05);
+}
+
+TEST(Pictures, EdgesOnMarchedSurfacesAreBlended) {
+  const std::string stripes = "c += _t > 9 ? 0 : floor(3 * _p.x + .3) * .1\n";
+  const Picture ours = marched(stripes, procedural()), plainly = marched(stripes, plain()),
+                many = marched(stripes, samples(256)), bare = marched("", procedural());
+  EXPECT_LT(distance(ours, many), 0.15 * distance(plainly, many));
+  // The program knows where the stripes are.
+  EXPECT_GT(ours.counts.blended, 250);
+  EXPECT_LT(ours.counts.supersampled, bare.counts.supersampled + 50);
+}
+
 TEST(Pictures, WhatLiesBetweenTheSamplesIsSeen) {
   const std::string stripes = axes(16) + "c = mod(floor(2 * _y + 0.25), 2)\n";
   const PictureOptions size{.width = 16, .height = 16};

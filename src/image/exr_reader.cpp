@@ -22,9 +22,9 @@ namespace pse::image {
 namespace {
 
 // The library's view of a ByteSource. Small reads are served from a block.
-class Stream : public Imf::IStream {
+class InStream : public Imf::IStream {
  public:
-  explicit Stream(Bytes bytes) : Imf::IStream(bytes->name().c_str()), bytes_(std::move(bytes)) {}
+  explicit InStream(Bytes bytes) : Imf::IStream(bytes->name().c_str()), bytes_(std::move(bytes)) {}
 
   bool read(char to[], int count) override {
     int done = 0;
@@ -238,7 +238,7 @@ class ExrReader : public ImageReader {
                       sizeof(float) * static_cast<std::size_t>(width), x_step, y_step);
   }
 
-  Stream stream_;
+  InStream stream_;
   std::string name_;
   Imf::MultiPartInputFile file_;
   std::vector<Part> parts_;

@@ -23,9 +23,9 @@ namespace {
 constexpr int band_rows = 256;
 
 // The library's view of an OutputFile.
-class Stream : public Imf::OStream {
+class OutStream : public Imf::OStream {
  public:
-  Stream(OutputFile& file) : Imf::OStream(file.name().c_str()), file_(file) {}
+  OutStream(OutputFile& file) : Imf::OStream(file.name().c_str()), file_(file) {}
   void write(const char from[], int count) override {
     if (!file_.write(from, static_cast<std::size_t>(count))) throw Iex::IoExc("cannot write");
   }
@@ -168,7 +168,7 @@ class ExrWriter : public ImageWriter {
   }
 
   OutputFile file_;
-  Stream stream_;
+  OutStream stream_;
   std::unique_ptr<Imf::OutputFile> lines_;
   std::unique_ptr<Imf::TiledOutputFile> tiled_;
   int tile_ = 0, rows_ = 1, filled_ = 0;

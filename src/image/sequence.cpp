@@ -57,16 +57,16 @@ std::optional<Range> parse_range(std::string_view text) {
 }
 
 // Where the pattern lies in a name and how many digits it asks for.
-struct Place {
+struct Pattern {
   std::size_t begin = 0, end = 0;
   int digits = 1;
 };
 
 // The error is a sentence; no value means there is no pattern.
-std::expected<std::optional<Place>, std::string> find_pattern(std::string_view name) {
-  std::optional<Place> found;
+std::expected<std::optional<Pattern>, std::string> find_pattern(std::string_view name) {
+  std::optional<Pattern> found;
   for (std::size_t i = 0; i < name.size();) {
-    Place here{i, i, 1};
+    Pattern here{i, i, 1};
     if (name[i] == '#') {
       while (here.end < name.size() && name[here.end] == '#') ++here.end;
       here.digits = here.end - here.begin == 1 ? 4 : static_cast<int>(here.end - here.begin);

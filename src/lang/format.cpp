@@ -11,7 +11,6 @@ namespace pse::lang {
 namespace {
 
 constexpr std::array assign_spellings = {" = ", " += ", " -= ", " *= ", " /= ", " ^= "};
-constexpr std::size_t step = 4;
 
 bool is_simple(const Stmt& statement) {
   return std::holds_alternative<AssignStmt>(statement.node) ||
@@ -301,16 +300,16 @@ class Formatter {
         end_line(head_end, first);
       else
         end_line(block.span.begin, first);
-      statements(block, indent + step, block.span.end - 1);
-      comments_before(block.span.end - 1, indent + step);
+      statements(block, indent + indent_step, block.span.end - 1);
+      comments_before(block.span.end - 1, indent + indent_step);
       indent_to(indent);
       out_ += '}';
       last_end_ = block.span.end;
       if (!open) end_line(block.span.end, limit);
     } else {
       end_line(head_end, block.span.begin);
-      statements(block, indent + step, limit);
-      comments_inside(limit, line_column(begin), indent + step);
+      statements(block, indent + indent_step, limit);
+      comments_inside(limit, line_column(begin), indent + indent_step);
     }
     fresh_block_ = false;
   }

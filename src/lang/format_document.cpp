@@ -8,7 +8,6 @@ namespace pse::lang {
 
 namespace {
 
-constexpr std::size_t step = 4;
 constexpr std::size_t shortest =
     25;  // a narrower group stays whole: broken, it reads worse than a line too long
 
@@ -74,7 +73,7 @@ bool break_last_part(const Document& group, std::size_t indent, std::size_t limi
 void break_group(const Document& group, std::size_t indent, std::size_t limit, std::size_t after,
                  std::string& out) {
   if (break_last_part(group, indent, limit, after, out)) return;
-  const std::size_t inner = indent + step;
+  const std::size_t inner = indent + indent_step;
   const std::string separator = trimmed(group.separator);
   out += trimmed(group.open);
   std::size_t column = limit + 1;  // a new line first

@@ -7,6 +7,9 @@
 
 namespace pse::lang {
 
+// The columns that a block is further in.
+inline constexpr std::size_t indent_step = 4;
+
 // A text; a row of documents; or a group: documents in brackets, broken into lines only when it
 // does not fit.
 struct Document {

@@ -24,7 +24,7 @@ constexpr BuiltinEntry large(std::string_view name, std::string_view parameters,
   return entry;
 }
 
-constexpr BuiltinEntry list[] = {
+constexpr BuiltinEntry math_list[] = {
     small(
         "abs", "a", [](Numbers a) { return abs(a[0]); }, "a without its sign"),
     small(
@@ -122,6 +122,6 @@ constexpr BuiltinEntry list[] = {
 
 }  // namespace
 
-std::span<const BuiltinEntry> math_builtins() { return list; }
+std::span<const BuiltinEntry> math_builtins() { return math_list; }
 
 }  // namespace pse

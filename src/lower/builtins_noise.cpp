@@ -184,7 +184,7 @@ constexpr BuiltinEntry alias(std::string_view name, std::string_view of) {
   return {.builtin = {name, "noise", "", ResultShape::number, "", of}};
 }
 
-constexpr BuiltinEntry list[] = {
+constexpr BuiltinEntry noise_list[] = {
     entry("Noise", plain, ResultShape::number, emit<Improved, Form::value>,
           "the signed noise of 2002 at a position of 1 to 4 coordinates: in [-1.1, 1.1] (3-D: at "
           "most 1.0364), mostly "
@@ -228,6 +228,6 @@ constexpr BuiltinEntry list[] = {
 
 }  // namespace
 
-std::span<const BuiltinEntry> noise_builtins() { return list; }
+std::span<const BuiltinEntry> noise_builtins() { return noise_list; }
 
 }  // namespace pse

@@ -13,7 +13,7 @@ std::expected<Components, std::string> hash(const BuiltinScope& scope, const Bou
   return scope.values(result);
 }
 
-const std::vector<BuiltinEntry> list = {
+const std::vector<BuiltinEntry> random_list = {
     {.builtin = {"hash", "noise", "v...", ResultShape::number,
                  "a random number in [0, 1) that depends on every bit of all components", ""},
      .call = hash},
@@ -22,6 +22,6 @@ const std::vector<BuiltinEntry> list = {
 
 }  // namespace
 
-std::span<const BuiltinEntry> random_builtins() { return list; }
+std::span<const BuiltinEntry> random_builtins() { return random_list; }
 
 }  // namespace pse

@@ -53,7 +53,7 @@ Result product(const BuiltinScope& scope, const BoundCall& call) {
   return fold(scope, call, [](const IrFloat& a, const IrFloat& b) { return a * b; });
 }
 
-constexpr BuiltinEntry list[] = {
+constexpr BuiltinEntry vector_list[] = {
     {.builtin = {"dot", "vector", "a, b", ResultShape::number, "the inner product of two vectors",
                  ""},
      .call = dot},
@@ -70,6 +70,6 @@ constexpr BuiltinEntry list[] = {
 
 }  // namespace
 
-std::span<const BuiltinEntry> vector_builtins() { return list; }
+std::span<const BuiltinEntry> vector_builtins() { return vector_list; }
 
 }  // namespace pse

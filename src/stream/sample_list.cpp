@@ -22,7 +22,7 @@ constexpr std::array<Step, neighbour_count> steps = {{{Neighbour::left, -1, 0},
                                                       {Neighbour::down_right, 1, 1}}};
 
 // Places in row-major order; wide enough for the neighbours of the extreme coordinates.
-using Place = std::pair<std::int64_t, std::int64_t>;  // y, x
+using RowAndColumn = std::pair<std::int64_t, std::int64_t>;
 
 }  // namespace
 
@@ -48,7 +48,7 @@ NeighbourTable::NeighbourTable(const SampleList& list) : table_(list.size()) {
   std::iota(order.begin(), order.end(), 0);
   const auto place_of = [&](std::int32_t i) {
     const Sample& sample = list[static_cast<std::size_t>(i)];
-    return Place{sample.y, sample.x};
+    return RowAndColumn{sample.y, sample.x};
   };
   const auto before = [&](std::int32_t a, std::int32_t b) { return place_of(a) < place_of(b); };
   if (!std::is_sorted(order.begin(), order.end(), before))
@@ -60,7 +60,7 @@ NeighbourTable::NeighbourTable(const SampleList& list) : table_(list.size()) {
     auto cursor = order.begin();
     for (const std::int32_t i : order) {
       const Sample& sample = list[static_cast<std::size_t>(i)];
-      const Place wanted = {std::int64_t{sample.y} + step.dy, std::int64_t{sample.x} + step.dx};
+      const RowAndColumn wanted = {std::int64_t{sample.y} + step.dy, std::int64_t{sample.x} + step.dx};
       while (cursor != order.end() && place_of(*cursor) < wanted) ++cursor;
       const bool found = cursor != order.end() && place_of(*cursor) == wanted;
       table_[static_cast<std::size_t>(i)][static_cast<std::size_t>(step.which)] =

@@ -170,6 +170,23 @@ class Revolution : public Shape {
   }
   Box bounds() const override { return bounds_; }
 
+  // A piece lies within its control points: each of them turned about Y, in a ring of 16 corners.
+  std::vector<Hull> hulls() const override {
+    constexpr int corners = 16;
+    std::vector<Hull> all;
+    for (const Piece& piece : pieces_) {
+      double radius[4], height[4];
+      to_bernstein(piece.radius, 3, radius), to_bernstein(piece.height, 3, height);
+      Hull& hull = all.emplace_back();
+      for (std::size_t i = 0; i < 4; ++i)
+        for (int corner = 0; corner < corners; ++corner) {
+          const double angle = 2 * pi * corner / corners, r = radius[i] / std::cos(pi / corners);
+          hull.push_back({r * std::cos(angle), height[i], r * std::sin(angle)});
+        }
+    }
+    return all;
+  }
+
   void find(std::span<const Ray> rays, std::span<Meeting> meetings) const override {
     const Profile profile{pieces_.data(), pieces_.size(), groups_.data(), groups_.size(), bounds_};
     find_(profile, rays.size(), rays.data(), meetings.data());

@@ -171,9 +171,15 @@ void NameWriter::each(const Wanted& wanted, std::span<const Shown> shown, const 
   }
 }
 
+void NameWriter::begin(std::size_t count, std::span<float* const> planes) const {
+  for (const Wanted& wanted : wanted_)
+    if (wanted.what == What::id && planes[wanted.input] != nullptr)
+      std::fill_n(planes[wanted.input], count, 0.0f);
+}
+
 void NameWriter::write(std::span<const Sighting> sightings, std::span<const Hit> hits,
-                       std::span<float* const> planes, bool misses) const {
-  // What is shown: objects, and the background where it is shaded.
+                       std::span<float* const> planes) const {
+  // What is shown: objects, and the background.
   thread_local std::vector<Shown> shown;
   thread_local std::vector<Ray> rays;
   thread_local std::vector<Hit> found;
@@ -181,7 +187,7 @@ void NameWriter::write(std::span<const Sighting> sightings, std::span<const Hit>
   shown.clear(), rays.clear(), found.clear();
   for (std::size_t k = 0; k < sightings.size(); ++k) {
     if (hits[k].found()) rays.push_back(*sightings[k].ray), found.push_back(hits[k]);
-    if (hits[k].found() || misses) shown.push_back({&sightings[k], nullptr, hits[k].object, {}, {}});
+    shown.push_back({&sightings[k], nullptr, hits[k].object, {}, {}});
   }
   spots.resize(rays.size());
   if (wants_spots_) scene_->describe(rays, found, wants_uv_, spots);
@@ -203,8 +209,6 @@ void NameWriter::write(std::span<const Sighting> sightings, std::span<const Hit>
       ++k;
       outs[static_cast<std::size_t>(wanted_[k].component)] = planes[wanted_[k].input];
     }
-    if (wanted.what == What::id && outs[0] != nullptr)
-      for (const Sighting& s : sightings) outs[0][s.sample] = 0;
     if (outs == std::array<float*, 3>{}) continue;
     each(wanted, shown, [&](const Shown& s, const Vec3& v) {
       const std::uint32_t i = s.sighting->sample;
@@ -230,28 +234,46 @@ void set_scene_uniforms(const ir::Module& module, std::span<const Light> lights,
 
 SurfaceSource::SurfaceSource(const ir::Module& module, std::shared_ptr<const Scene> scene,
                              const Lens& lens, bool misses)
-    : scene_(scene), lens_(lens), names_(module, std::move(scene), lens), misses_(misses) {}
+    : scene_(scene),
+      lens_(lens),
+      cover_(*scene, lens),
+      names_(module, std::move(scene), lens),
+      misses_(misses) {}
 
 namespace {
 
 // The order in which rays are sent: where samples are rows of a picture, in blocks of 4 by 2 pixels,
-// so that eight rays in a row lie side by side. (What a sample shows does not depend on it.)
-void in_blocks(std::span<const double> y, std::vector<std::uint32_t>& order) {
-  order.clear();
-  std::size_t row = 1;
-  while (row < y.size() && y[row] == y[0]) ++row;
-  const std::size_t rows = y.size() / row;
-  const auto add = [&](std::size_t i) { order.push_back(static_cast<std::uint32_t>(i)); };
-  if (row < 8 || row * rows != y.size()) {
-    for (std::size_t i = 0; i < y.size(); ++i) add(i);
-    return;
+// so that eight rays in a row lie side by side. (What a sample shows does not depend on it.) The
+// last one made is kept, since most tiles have the same.
+class Order {
+ public:
+  std::span<const std::uint32_t> of(std::span<const double> y) {
+    std::size_t row = 1;
+    while (row < y.size() && y[row] == y[0]) ++row;
+    if (row != row_ || y.size() != order_.size()) make(row, y.size());
+    return order_;
   }
-  for (std::size_t top = 0; top < rows; top += 2)
-    for (std::size_t left = 0; left < row; left += 4)
-      for (std::size_t down = top; down < std::min(top + 2, rows); ++down)
-        for (std::size_t across = left; across < std::min(left + 4, row); ++across)
-          add(down * row + across);
-}
+
+ private:
+  void make(std::size_t row, std::size_t count) {
+    row_ = row;
+    order_.clear();
+    const std::size_t rows = count / row;
+    const auto add = [&](std::size_t i) { order_.push_back(static_cast<std::uint32_t>(i)); };
+    if (row < 8 || row * rows != count) {
+      for (std::size_t i = 0; i < count; ++i) add(i);
+      return;
+    }
+    for (std::size_t top = 0; top < rows; top += 2)
+      for (std::size_t left = 0; left < row; left += 4)
+        for (std::size_t down = top; down < std::min(top + 2, rows); ++down)
+          for (std::size_t across = left; across < std::min(left + 4, row); ++across)
+            add(down * row + across);
+  }
+
+  std::size_t row_ = 0;
+  std::vector<std::uint32_t> order_;
+};
 
 }  // namespace
 
@@ -259,31 +281,38 @@ void in_blocks(std::span<const double> y, std::vector<std::uint32_t>& order) {
 void SurfaceSource::fill(std::span<const double> x, std::span<const double> y,
                          std::span<float* const> planes) const {
   constexpr std::size_t piece = 256;
-  thread_local std::vector<std::uint32_t> order;
-  in_blocks(y, order);
-  for (std::size_t i = 0; i < x.size(); i += piece)
-    fill_some(x, y, std::span(order).subspan(i, std::min(piece, x.size() - i)), planes);
+  thread_local Order order;
+  thread_local std::vector<std::uint32_t> near, empty;
+  near.clear(), empty.clear();
+  for (const std::uint32_t i : order.of(y)) (cover_.may_show(x[i], y[i]) ? near : empty).push_back(i);
+  names_.begin(x.size(), planes);
+  const auto in_pieces = [&](const std::vector<std::uint32_t>& samples, bool are_empty) {
+    for (std::size_t i = 0; i < samples.size(); i += piece)
+      fill_some(x, y, std::span(samples).subspan(i, std::min(piece, samples.size() - i)), are_empty,
+                planes);
+  };
+  in_pieces(near, false);
+  if (misses_) in_pieces(empty, true);
 }
 
 void SurfaceSource::fill_some(std::span<const double> x, std::span<const double> y,
-                              std::span<const std::uint32_t> samples,
+                              std::span<const std::uint32_t> samples, bool empty,
                               std::span<float* const> planes) const {
   thread_local std::vector<Ray> rays;
   thread_local std::vector<Hit> hits;
   thread_local std::vector<Sighting> sightings;
-  sightings.clear();
-  rays.resize(samples.size()), hits.resize(samples.size());
+  rays.resize(samples.size()), hits.assign(samples.size(), {});
   lens_.rays(x, y, samples, rays);
-  scene_->trace(rays, hits);
+  if (!empty) scene_->trace(rays, hits);
+  // What is shown, moved together.
+  sightings.clear();
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (!hits[k].found() && !misses_) {
-      sightings.push_back({samples[k], &rays[k], 0, 0});
-      continue;
-    }
+    if (!hits[k].found() && !misses_) continue;
     const double t = hits[k].found() ? hits[k].t() : 1;
+    hits[sightings.size()] = hits[k];
     sightings.push_back({samples[k], &rays[k], lens_.width(rays[k], t), lens_.depth(rays[k], t)});
   }
-  names_.write(sightings, hits, planes, misses_);
+  names_.write(sightings, std::span(hits).first(sightings.size()), planes);
 }
 
 TileSource at_pixel_centres(std::shared_ptr<const SampleSource> source, double sample_x,

@@ -8,7 +8,7 @@
 #include "stream/executor.h"
 #include "stream/image_plane.h"
 #include "stream/sample_source.h"
-#include "surface/scene.h"
+#include "surface/cover.h"
 
 namespace pse::surface {
 
@@ -35,9 +35,11 @@ class NameWriter {
   }
 
   // planes[i] receives module input i, for those that are names of surfaces; null: not wanted.
-  // hits[k] is what sighting k met. Without `misses`, samples that show nothing get their `id` only.
+  // First `count` samples show nothing: their id is 0, other names are left alone.
+  void begin(std::size_t count, std::span<float* const> planes) const;
+  // Then what is shown. hits[k] is what sighting k met; those that met nothing are the background.
   void write(std::span<const Sighting> sightings, std::span<const Hit> hits,
-             std::span<float* const> planes, bool misses) const;
+             std::span<float* const> planes) const;
 
  private:
   // What a sample shows: a sighting with its spot, and how `point` moves from pixel to pixel.
@@ -88,11 +90,14 @@ class SurfaceSource : public SampleSource {
   }
 
  private:
+  // Of samples that may show something, or of such as do not (`empty`).
   void fill_some(std::span<const double> x, std::span<const double> y,
-                 std::span<const std::uint32_t> samples, std::span<float* const> planes) const;
+                 std::span<const std::uint32_t> samples, bool empty,
+                 std::span<float* const> planes) const;
 
   std::shared_ptr<const Scene> scene_;
   Lens lens_;
+  Cover cover_;
   NameWriter names_;
   bool misses_;
 };

@@ -4,6 +4,8 @@
 #include <array>
 #include <string_view>
 
+#include "surface/lanes.h"
+
 namespace pse::surface {
 namespace {
 
@@ -105,18 +107,65 @@ Vec3 NameWriter::world_shift(const Shown& s, const Vec3& axis) {
   return step - (dot(s.spot->flat, step) / facing) * d;
 }
 
-// The same in the object's frame.
-Vec3 NameWriter::shift(const Shown& s, const Vec3& axis) const {
-  return scene_->to_object(static_cast<std::size_t>(s.object)).vector(world_shift(s, axis));
+namespace {
+
+// Vectors side by side.
+struct Vec3s {
+  Lanes x, y, z;
+};
+Vec3s operator-(const Vec3s& a, const Vec3s& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vec3s operator*(const Lanes& s, const Vec3s& a) { return {s * a.x, s * a.y, s * a.z}; }
+Lanes dot(const Vec3s& a, const Vec3s& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+// of(k) for each lane.
+template <class Of>
+Vec3s side_by_side(const Of& of) {
+  const Vec3 &a = of(0), &b = of(1), &c = of(2), &d = of(3);
+  return {Lanes{a.x, b.x, c.x, d.x}, Lanes{a.y, b.y, c.y, d.y}, Lanes{a.z, b.z, c.z, d.z}};
 }
 
-template <class Put>
-void NameWriter::each(const Wanted& wanted, std::span<const Shown> shown, const Put& put) const {
+}  // namespace
+
+// The same of many, with the same bits, in their objects' frames.
+void NameWriter::set_shifts(std::span<Shown> shown) const {
+  for (std::size_t first = 0; first < shown.size(); first += lane_count) {
+    const std::size_t count = std::min(lane_count, shown.size() - first);
+    // The last one stands for what is missing.
+    const auto at = [&](std::size_t k) -> Shown& { return shown[first + std::min(k, count - 1)]; };
+    const Vec3s d = side_by_side([&](std::size_t k) -> const Vec3& { return at(k).sighting->ray->direction; }),
+                flat = side_by_side([&](std::size_t k) -> const Vec3& { return at(k).spot->flat; });
+    const Lanes width{at(0).sighting->width, at(1).sighting->width, at(2).sighting->width,
+                      at(3).sighting->width};
+    const Lanes facing = smaller(dot(flat, d), Lanes{} - 0.001);
+    for (Vec3 Shown::*shift : {&Shown::dx, &Shown::dy}) {
+      const Vec3& a = shift == &Shown::dx ? right_ : up_;
+      const Vec3s axis{Lanes{} + a.x, Lanes{} + a.y, Lanes{} + a.z};
+      const Vec3s across = axis - dot(axis, d) * d;
+      const Lanes length = square_root(dot(across, across));
+      const Vec3s step = width * (choose(length > 0, 1 / length, Lanes{} + 1) * across);
+      const Vec3s moved = step - (dot(flat, step) / facing) * d;
+      for (std::size_t k = 0; k < count; ++k)
+        if (at(k).object >= 0)
+          at(k).*shift = scene_->vector_to_object(static_cast<std::size_t>(at(k).object),
+                                                  {moved.x[k], moved.y[k], moved.z[k]});
+    }
+  }
+}
+
+void NameWriter::write_one(const Wanted& wanted, std::span<const Shown> shown,
+                           const Outs& outs) const {
   const auto all = [&](const auto& value) {
-    for (const Shown& s : shown) put(s, value(s));
+    const bool complete = outs[0] != nullptr && outs[1] != nullptr && outs[2] != nullptr;
+    for (const Shown& s : shown) {
+      const Vec3& v = value(s);
+      const std::uint32_t i = s.sighting->sample;
+      if (complete || outs[0] != nullptr) outs[0][i] = static_cast<float>(v.x);
+      if (complete || outs[1] != nullptr) outs[1][i] = static_cast<float>(v.y);
+      if (complete || outs[2] != nullptr) outs[2][i] = static_cast<float>(v.z);
+    }
   };
   const auto one = [&](const auto& value) {
-    for (const Shown& s : shown) put(s, Vec3{value(s), 0, 0});
+    for (const Shown& s : shown) outs[0][s.sighting->sample] = static_cast<float>(value(s));
   };
   const auto axes = [&](int which) {
     all([&](const Shown& s) {
@@ -195,13 +244,13 @@ void NameWriter::write(std::span<const Sighting> sightings, std::span<const Hit>
   const Spot* next = spots.data();
   for (Shown& s : shown) {
     s.spot = s.object < 0 ? &nothing : next++;
-    if (wants_shifts_ && s.object >= 0) s.dx = shift(s, right_), s.dy = shift(s, up_);
   }
+  if (wants_shifts_) set_shifts(shown);
 
   // The components of a vector stand side by side and are computed once.
   for (std::size_t k = 0; k < wanted_.size(); ++k) {
     const Wanted& wanted = wanted_[k];
-    std::array<float*, 3> outs{};
+    Outs outs{};
     outs[static_cast<std::size_t>(wanted.component)] = planes[wanted.input];
     while (k + 1 < wanted_.size() && wanted_[k + 1].what == wanted.what &&
            wanted_[k + 1].light == wanted.light &&
@@ -209,13 +258,7 @@ void NameWriter::write(std::span<const Sighting> sightings, std::span<const Hit>
       ++k;
       outs[static_cast<std::size_t>(wanted_[k].component)] = planes[wanted_[k].input];
     }
-    if (outs == std::array<float*, 3>{}) continue;
-    each(wanted, shown, [&](const Shown& s, const Vec3& v) {
-      const std::uint32_t i = s.sighting->sample;
-      if (outs[0] != nullptr) outs[0][i] = static_cast<float>(v.x);
-      if (outs[1] != nullptr) outs[1][i] = static_cast<float>(v.y);
-      if (outs[2] != nullptr) outs[2][i] = static_cast<float>(v.z);
-    });
+    if (outs != Outs{}) write_one(wanted, shown, outs);
   }
 }
 

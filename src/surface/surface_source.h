@@ -61,11 +61,11 @@ class NameWriter {
     std::size_t light;
   };
   static std::optional<Wanted> find(const std::string& name, std::size_t lights);
-  // Calls put(shown, value) with the value of a name at each sample.
-  template <class Put>
-  void each(const Wanted& wanted, std::span<const Shown> shown, const Put& put) const;
+  // The planes of a vector's components, or of a number; null where not wanted.
+  using Outs = std::array<float*, 3>;
+  void write_one(const Wanted& wanted, std::span<const Shown> shown, const Outs& outs) const;
   static Vec3 world_shift(const Shown& s, const Vec3& axis);
-  Vec3 shift(const Shown& s, const Vec3& axis) const;
+  void set_shifts(std::span<Shown> shown) const;
 
   std::shared_ptr<const Scene> scene_;
   Vec3 right_, up_;

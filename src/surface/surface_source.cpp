@@ -4,8 +4,6 @@
 #include <array>
 #include <string_view>
 
-#include "surface/lanes.h"
-
 namespace pse::surface {
 namespace {
 
@@ -109,45 +107,41 @@ Vec3 NameWriter::world_shift(const Shown& s, const Vec3& axis) {
 
 namespace {
 
-// Vectors side by side.
+// Two numbers and two vectors side by side: what every processor does at once.
+using Pair [[gnu::vector_size(16)]] = double;
 struct Vec3s {
-  Lanes x, y, z;
+  Pair x, y, z;
 };
 Vec3s operator-(const Vec3s& a, const Vec3s& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vec3s operator*(const Lanes& s, const Vec3s& a) { return {s * a.x, s * a.y, s * a.z}; }
-Lanes dot(const Vec3s& a, const Vec3s& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
-// of(k) for each lane.
-template <class Of>
-Vec3s side_by_side(const Of& of) {
-  const Vec3 &a = of(0), &b = of(1), &c = of(2), &d = of(3);
-  return {Lanes{a.x, b.x, c.x, d.x}, Lanes{a.y, b.y, c.y, d.y}, Lanes{a.z, b.z, c.z, d.z}};
+Vec3s operator*(Pair s, const Vec3s& a) { return {s * a.x, s * a.y, s * a.z}; }
+Pair dot(const Vec3s& a, const Vec3s& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Vec3s both(const Vec3& a, const Vec3& b) {
+  return {Pair{a.x, b.x}, Pair{a.y, b.y}, Pair{a.z, b.z}};
 }
 
 }  // namespace
 
 // The same of many, with the same bits, in their objects' frames.
 void NameWriter::set_shifts(std::span<Shown> shown) const {
-  for (std::size_t first = 0; first < shown.size(); first += lane_count) {
-    const std::size_t count = std::min(lane_count, shown.size() - first);
-    // The last one stands for what is missing.
-    const auto at = [&](std::size_t k) -> Shown& { return shown[first + std::min(k, count - 1)]; };
-    const Vec3s d = side_by_side([&](std::size_t k) -> const Vec3& { return at(k).sighting->ray->direction; }),
-                flat = side_by_side([&](std::size_t k) -> const Vec3& { return at(k).spot->flat; });
-    const Lanes width{at(0).sighting->width, at(1).sighting->width, at(2).sighting->width,
-                      at(3).sighting->width};
-    const Lanes facing = smaller(dot(flat, d), Lanes{} - 0.001);
+  for (std::size_t k = 0; k < shown.size(); k += 2) {
+    Shown &one = shown[k], &other = shown[std::min(k + 1, shown.size() - 1)];
+    const Vec3s d = both(one.sighting->ray->direction, other.sighting->ray->direction),
+                flat = both(one.spot->flat, other.spot->flat);
+    const Pair width{one.sighting->width, other.sighting->width}, zero{};
+    const Pair slope = dot(flat, d), facing = slope < -0.001 ? slope : zero - 0.001;
     for (Vec3 Shown::*shift : {&Shown::dx, &Shown::dy}) {
-      const Vec3& a = shift == &Shown::dx ? right_ : up_;
-      const Vec3s axis{Lanes{} + a.x, Lanes{} + a.y, Lanes{} + a.z};
-      const Vec3s across = axis - dot(axis, d) * d;
-      const Lanes length = square_root(dot(across, across));
-      const Vec3s step = width * (choose(length > 0, 1 / length, Lanes{} + 1) * across);
+      const Vec3& axis = shift == &Shown::dx ? right_ : up_;
+      const Vec3s along = both(axis, axis), across = along - dot(along, d) * d;
+      const Pair square = dot(across, across);
+      const Pair size{std::sqrt(square[0]), std::sqrt(square[1])};
+      const Vec3s step = width * ((size > 0 ? 1 / size : zero + 1) * across);
       const Vec3s moved = step - (dot(flat, step) / facing) * d;
-      for (std::size_t k = 0; k < count; ++k)
-        if (at(k).object >= 0)
-          at(k).*shift = scene_->vector_to_object(static_cast<std::size_t>(at(k).object),
-                                                  {moved.x[k], moved.y[k], moved.z[k]});
+      const auto put = [&](Shown& s, const Vec3& v) {
+        if (s.object >= 0)
+          s.*shift = scene_->vector_to_object(static_cast<std::size_t>(s.object), v);
+      };
+      put(one, {moved.x[0], moved.y[0], moved.z[0]});
+      put(other, {moved.x[1], moved.y[1], moved.z[1]});
     }
   }
 }

@@ -76,21 +76,30 @@ struct Bracket {
   return found;
 }
 
-// The only root in the bracket of polynomials (rising powers): Newton's method, held in it.
+// The only root in the bracket of polynomials (rising powers): Halley's method, held in it. After a
+// short step s less than s^2 f'' / 2 f' is left, so that no step is taken to see that the one before
+// was the last.
 [[gnu::always_inline]] inline Lanes refine(Answers open, const Lanes (&power)[7],
                                            const Bracket& bracket) {
+  constexpr double near = 1e-13, is_short = 1e-5;
   Lanes a = bracket.a, b = bracket.b;
   const Lanes share = bracket.at_a / (bracket.at_a - bracket.at_b);
   Lanes x = a + (b - a) * choose(bracket.at_a * bracket.at_b < 0, share, Lanes{} + 0.5);
   for (int step = 0; step < 60 && any(open); ++step) {
-    Lanes value = power[6], slope{};
-    for (int i = 6; i-- > 0;) slope = slope * x + value, value = value * x + power[i];
+    Lanes value = power[6], slope{}, bend{};  // bend: half the second derivative
+    for (int i = 6; i-- > 0;) {
+      bend = bend * x + slope;
+      slope = slope * x + value;
+      value = value * x + power[i];
+    }
     const Answers before = (value > 0) == bracket.above;
     a = choose(before, x, a), b = choose(before, b, x);
-    const Lanes newton = x - value / slope;
-    const Lanes next = choose((newton > a) & (newton < b), newton, 0.5 * (a + b));
-    const Answers found = value == 0;
-    const Answers done = found | (size(next - x) <= 1e-12) | (next == a) | (next == b);
+    const Lanes back = value * slope / (slope * slope - value * bend), jump = x - back;
+    const Answers inside = (jump > a) & (jump < b), found = value == 0;
+    const Lanes next = choose(inside, jump, 0.5 * (a + b));
+    const Answers arrived = inside & (size(back) <= is_short) &
+                            (back * back * size(bend) <= near * size(slope));
+    const Answers done = found | arrived | (next == a) | (next == b);
     x = choose(open & ~found, next, x);
     open &= ~done;
   }

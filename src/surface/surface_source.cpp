@@ -1,6 +1,7 @@
 // From hits to names.
 #include "surface/surface_source.h"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
@@ -99,7 +100,7 @@ NameWriter::NameWriter(const ir::Module& module, std::shared_ptr<const Scene> sc
 // How the place on the surface moves when the place in the picture moves by one pixel along `axis`:
 // the step across the ray, carried along the ray onto the tangent plane.
 Vec3 NameWriter::world_shift(const Shown& s, const Vec3& axis) {
-  const Vec3& d = s.sighting->ray->direction;
+  const Vec3& d = s.ray->direction;
   const Vec3 step = s.sighting->width * normalized(axis - dot(axis, d) * d);
   const double facing = std::min(dot(s.spot->flat, d), -0.001);
   return step - (dot(s.spot->flat, step) / facing) * d;
@@ -125,7 +126,7 @@ Vec3s both(const Vec3& a, const Vec3& b) {
 void NameWriter::set_shifts(std::span<Shown> shown) const {
   for (std::size_t k = 0; k < shown.size(); k += 2) {
     Shown &one = shown[k], &other = shown[std::min(k + 1, shown.size() - 1)];
-    const Vec3s d = both(one.sighting->ray->direction, other.sighting->ray->direction),
+    const Vec3s d = both(one.ray->direction, other.ray->direction),
                 flat = both(one.spot->flat, other.spot->flat);
     const Pair width{one.sighting->width, other.sighting->width}, zero{};
     const Pair slope = dot(flat, d), facing = slope < -0.001 ? slope : zero - 0.001;
@@ -192,9 +193,9 @@ void NameWriter::write_one(const Wanted& wanted, std::span<const Shown> shown,
       return one([](const Shown& s) { return s.object < 0 ? far_away : s.sighting->depth; });
     case What::hit: return one([](const Shown& s) { return s.object < 0 ? 0.0 : 1.0; });
     case What::backface: return one([](const Shown& s) { return s.spot->back ? 1.0 : 0.0; });
-    case What::view: return all([](const Shown& s) { return -s.sighting->ray->direction; });
-    case What::origin: return all([](const Shown& s) { return s.sighting->ray->origin; });
-    case What::direction: return all([](const Shown& s) { return s.sighting->ray->direction; });
+    case What::view: return all([](const Shown& s) { return -s.ray->direction; });
+    case What::origin: return all([](const Shown& s) { return s.ray->origin; });
+    case What::direction: return all([](const Shown& s) { return s.ray->direction; });
     case What::pixelsize: return one(size);
     case What::pixel_freq:
       return one([&](const Shown& s) { return 0.5 / static_cast<float>(size(s)); });
@@ -220,25 +221,27 @@ void NameWriter::begin(std::size_t count, std::span<float* const> planes) const 
       std::fill_n(planes[wanted.input], count, 0.0f);
 }
 
-void NameWriter::write(std::span<const Sighting> sightings, std::span<const Hit> hits,
-                       std::span<float* const> planes) const {
-  // What is shown: objects, and the background.
+void NameWriter::write(std::span<const Sighting> sightings, std::span<const Ray> rays,
+                       std::span<const Hit> hits, std::span<float* const> planes) const {
+  // What objects look like; the background looks like nothing.
   thread_local std::vector<Shown> shown;
-  thread_local std::vector<Ray> rays;
-  thread_local std::vector<Hit> found;
+  thread_local std::vector<Ray> object_rays;
+  thread_local std::vector<Hit> object_hits;
   thread_local std::vector<Spot> spots;
-  shown.clear(), rays.clear(), found.clear();
-  for (std::size_t k = 0; k < sightings.size(); ++k) {
-    if (hits[k].found()) rays.push_back(*sightings[k].ray), found.push_back(hits[k]);
-    shown.push_back({&sightings[k], nullptr, hits[k].object, {}, {}});
+  spots.resize(hits.size());
+  if (wants_spots_ && std::ranges::all_of(hits, &Hit::found)) {
+    scene_->describe(rays, hits, wants_uv_, spots);
+  } else if (wants_spots_) {
+    object_rays.clear(), object_hits.clear();
+    for (std::size_t k = 0; k < hits.size(); ++k)
+      if (hits[k].found()) object_rays.push_back(rays[k]), object_hits.push_back(hits[k]);
+    scene_->describe(object_rays, object_hits, wants_uv_, spots);
   }
-  spots.resize(rays.size());
-  if (wants_spots_) scene_->describe(rays, found, wants_uv_, spots);
   static const Spot nothing;
   const Spot* next = spots.data();
-  for (Shown& s : shown) {
-    s.spot = s.object < 0 ? &nothing : next++;
-  }
+  shown.resize(hits.size());
+  for (std::size_t k = 0; k < hits.size(); ++k)
+    shown[k] = {&sightings[k], &rays[k], hits[k].found() ? next++ : &nothing, hits[k].object, {}, {}};
   if (wants_shifts_) set_shifts(shown);
 
   // The components of a vector stand side by side and are computed once.
@@ -320,8 +323,13 @@ void SurfaceSource::fill(std::span<const double> x, std::span<const double> y,
   constexpr std::size_t piece = 256;
   thread_local Order order;
   thread_local std::vector<std::uint32_t> near, empty;
-  near.clear(), empty.clear();
-  for (const std::uint32_t i : order.of(y)) (cover_.may_show(x[i], y[i]) ? near : empty).push_back(i);
+  near.resize(x.size()), empty.resize(x.size());
+  std::size_t nears = 0, empties = 0;
+  for (const std::uint32_t i : order.of(y)) {
+    near[nears] = empty[empties] = i;
+    ++(cover_.may_show(x[i], y[i]) ? nears : empties);
+  }
+  near.resize(nears), empty.resize(empties);
   names_.begin(x.size(), planes);
   const auto in_pieces = [&](const std::vector<std::uint32_t>& samples, bool are_empty) {
     for (std::size_t i = 0; i < samples.size(); i += piece)
@@ -342,24 +350,30 @@ void SurfaceSource::fill_some(std::span<const double> x, std::span<const double>
   lens_.rays(x, y, samples, rays);
   if (!empty) scene_->trace(rays, hits);
   // What is shown, moved together.
-  sightings.clear();
+  sightings.resize(samples.size());
+  std::size_t count = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (!hits[k].found() && !misses_) continue;
     const double t = hits[k].found() ? hits[k].t() : 1;
-    hits[sightings.size()] = hits[k];
-    sightings.push_back({samples[k], &rays[k], lens_.width(rays[k], t), lens_.depth(rays[k], t)});
+    sightings[count] = {samples[k], lens_.width(rays[k], t), lens_.depth(rays[k], t)};
+    hits[count] = hits[k], rays[count] = rays[k];
+    ++count;
   }
-  names_.write(sightings, std::span(hits).first(sightings.size()), planes);
+  names_.write(std::span(sightings).first(count), std::span(rays).first(count),
+               std::span(hits).first(count), planes);
 }
 
 TileSource at_pixel_centres(std::shared_ptr<const SampleSource> source, double sample_x,
                             double sample_y) {
   return [source = std::move(source), sample_x, sample_y](const TileView& tile) {
     thread_local std::vector<double> x, y;
-    x.clear(), y.clear();
-    for (int row = tile.rect.y0; row < tile.rect.y1; ++row)
+    x.resize(static_cast<std::size_t>(tile.count)), y.resize(x.size());
+    auto next_x = x.begin(), next_y = y.begin();
+    for (int row = tile.rect.y0; row < tile.rect.y1; ++row) {
       for (int column = tile.rect.x0; column < tile.rect.x1; ++column)
-        x.push_back(column + sample_x), y.push_back(row + sample_y);
+        *next_x++ = column + sample_x;
+      next_y = std::fill_n(next_y, tile.rect.width(), row + sample_y);
+    }
     source->fill(x, y, tile.planes);
   };
 }

@@ -16,10 +16,9 @@ namespace pse::surface {
 // `light2_direction`.
 std::vector<StreamName> surface_names(std::size_t lights);
 
-// A sample's ray, and how wide a pixel is where it meets something.
+// A sample that sends a ray, and how wide a pixel is where that meets something.
 struct Sighting {
   std::uint32_t sample = 0;  // its index in the planes
-  const Ray* ray = nullptr;
   double width = 0;  // of a pixel across the ray, metres
   double depth = 0;
 };
@@ -37,14 +36,16 @@ class NameWriter {
   // planes[i] receives module input i, for those that are names of surfaces; null: not wanted.
   // First `count` samples show nothing: their id is 0, other names are left alone.
   void begin(std::size_t count, std::span<float* const> planes) const;
-  // Then what is shown. hits[k] is what sighting k met; those that met nothing are the background.
-  void write(std::span<const Sighting> sightings, std::span<const Hit> hits,
-             std::span<float* const> planes) const;
+  // Then what is shown. hits[k] is what sighting k met with rays[k]; those that met nothing are the
+  // background.
+  void write(std::span<const Sighting> sightings, std::span<const Ray> rays,
+             std::span<const Hit> hits, std::span<float* const> planes) const;
 
  private:
   // What a sample shows: a sighting with its spot, and how `point` moves from pixel to pixel.
   struct Shown {
     const Sighting* sighting;
+    const Ray* ray;
     const Spot* spot;
     int object;
     Vec3 dx, dy;  // where wanted

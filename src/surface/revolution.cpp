@@ -72,7 +72,9 @@ void meet_level(const Course<double>& ray, const Piece& piece, double part,
         t -= (f * gv - fv * g) / determinant;
         v -= (ft * g - f * gt) / determinant;
       }
-      if (v >= 0 && v <= 1) ray.keep(true, ray.middle + t, v, part, nearest);
+      // A ray at the height of a profile's point meets a piece at its very end.
+      if (v >= -slack && v <= 1 + slack)
+        ray.keep(true, ray.middle + t, std::clamp(v, 0.0, 1.0), part, nearest);
     }
   }
 }

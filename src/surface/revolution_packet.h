@@ -53,7 +53,8 @@ template <class Meet>
   // Of several roots the one that the ray comes to first, where it comes from outside to a piece
   // that only rises or falls.
   const Lanes zero{};
-  Bracket bracket{zero, zero + 1, bernstein[0], bernstein[6], whole.first > 0};
+  Bracket bracket{choose(bernstein[6] == 0, zero + 1, zero), zero + 1, bernstein[0], bernstein[6],
+                  whole.first > 0};
   Answers once = which & (whole.changes == 1);
   Answers alone = which & (whole.changes > 1);
   if (const Answers in_order = alone & (rays.begin > rays.least);

@@ -10,7 +10,8 @@ namespace pse::surface::revolution {
 namespace {
 
 // Of the Bernstein coefficients: how often the sign changes, where those of 0 have the sign before
-// them, and the first sign, 1 or -1.
+// them, and the first sign, 1 or -1. A root at the end counts as a change, one at the beginning
+// does not: it belongs to what lies before.
 struct Signs {
   Lanes changes{}, first{};
 };
@@ -24,11 +25,12 @@ struct Signs {
     signs.first = choose(signs.first == 0, sign, signs.first);
     before = sign;
   }
+  signs.changes += choose((bernstein[6] == 0) & (before != 0), Lanes{} + 1, Lanes{});
   return signs;
 }
 
-// An interval in which a polynomial has one root: its values at the ends, of different sign or 0;
-// `above`: whether it falls.
+// An interval in which a polynomial has one root, or the root itself where that is at its end: the
+// values at the ends, of different sign or 0; `above`: whether it falls.
 struct Bracket {
   Lanes a, b, at_a, at_b;
   Answers above;
@@ -45,6 +47,9 @@ struct Bracket {
   for (int i = 0; i < 7; ++i) c[i] = choose(last, bernstein[6 - i], bernstein[i]);
   Lanes begin{}, size = begin + 1, first{};
   Answers found{}, left_behind{};
+  // From there a root at the end would be one at the beginning.
+  sure &= ~(open & last & (c[0] == 0));
+  open &= sure;
   for (int round = 0; round < most_halvings && any(open); ++round) {
     Lanes left[7], right[7];
     for (int i = 0; i < 7; ++i) right[i] = c[i];
@@ -68,6 +73,7 @@ struct Bracket {
   }
   sure &= ~open;
   const Lanes end = begin + size;
+  begin = choose(c[6] == 0, end, begin);
   bracket.a = choose(found, choose(last, 1 - end, begin), bracket.a);
   bracket.b = choose(found, choose(last, 1 - begin, end), bracket.b);
   bracket.at_a = choose(found, choose(last, c[6], c[0]), bracket.at_a);
@@ -85,6 +91,7 @@ struct Bracket {
   Lanes a = bracket.a, b = bracket.b;
   const Lanes share = bracket.at_a / (bracket.at_a - bracket.at_b);
   Lanes x = a + (b - a) * choose(bracket.at_a * bracket.at_b < 0, share, Lanes{} + 0.5);
+  open &= a < b;
   for (int step = 0; step < 60 && any(open); ++step) {
     Lanes value = power[6], slope{}, bend{};  // bend: half the second derivative
     for (int i = 6; i-- > 0;) {

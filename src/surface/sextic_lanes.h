@@ -83,8 +83,8 @@ struct Bracket {
 }
 
 // The only root in the bracket of polynomials (rising powers): Halley's method, held in it. After a
-// short step s less than s^2 f'' / 2 f' is left, so that no step is taken to see that the one before
-// was the last.
+// short step s less than s^2 f'' / 2 f' is left, so that no step is taken to see that the
+// one before was the last.
 [[gnu::always_inline]] inline Lanes refine(Answers open, const Lanes (&power)[7],
                                            const Bracket& bracket) {
   constexpr double near = 1e-13, is_short = 1e-5;

@@ -301,7 +301,7 @@ std::vector<FrameState> Surfaces::states(const Joined& joined, const ImagePlane&
   return states;
 }
 
-// Reads what the program wants, and what that follows from.
+// Reads what the program wants, and what that follows from; once for all frames of the same file.
 void Surfaces::begin_stored_frame() {
   const auto bare = images_->bare();
   surface::read_gbuffer_attributes(bare->reader.spec().attributes, stored_);
@@ -314,9 +314,14 @@ void Surfaces::begin_stored_frame() {
     for (const int channel : image::find_layer(bare->layers, name)->channels)
       channels.insert(bare->reader.spec().channels[static_cast<std::size_t>(channel)].name);
   const std::vector<std::string> names(channels.begin(), channels.end());
+  std::vector<std::string> of = names;
+  of.push_back(bare->file);
+  if (of == picture_of_) return;
+  picture_.reset(), picture_of_.clear();  // not both in memory
   auto picture = image::read_image(bare->reader, {}, names);
   if (!picture) throw Failure(Exit::input, picture.error().message);
   picture_ = std::make_shared<const image::Image>(std::move(*picture));
+  picture_of_ = std::move(of);
 }
 
 void Surfaces::warn_inside(const surface::Camera& camera) {

@@ -97,6 +97,7 @@ class Surfaces {
   surface::SurfaceLayers layers_;
   surface::GBufferFrame stored_;
   std::shared_ptr<const image::Image> picture_;
+  std::vector<std::string> picture_of_;  // the file and the channels that it was read from
 };
 
 // The program that `pse trace` runs: it sets what G-buffers hold.

@@ -41,6 +41,19 @@ class Lens {
     return parallel_ ? pixel_ : pixel_ * t * dot(ray.direction, forward_);
   }
   double pixel_angle() const { return pixel_; }
+  // Where in the picture a point is seen, in pixels, and how wide a pixel is at its depth; not above
+  // 0 for what is not before the eye, and of no use then.
+  struct Seen {
+    double x, y, pixel;
+  };
+  Seen project(const Vec3& point) const {
+    const Vec3 away = point - eye_;
+    const double scale = parallel_ ? step_ : step_ * dot(away, forward_);
+    return {0.5 * (width_ + dot(away, right_) / scale), 0.5 * (height_ - dot(away, up_) / scale),
+            2 * scale};
+  }
+  double picture_width() const { return width_; }  // in pixels
+  double picture_height() const { return height_; }
   const Vec3& eye() const { return eye_; }
   const Vec3& right() const { return right_; }
   const Vec3& up() const { return up_; }

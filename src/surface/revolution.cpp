@@ -72,7 +72,9 @@ void meet_level(const Course<double>& ray, const Piece& piece, double part,
         t -= (f * gv - fv * g) / determinant;
         v -= (ft * g - f * gt) / determinant;
       }
-      if (v >= 0 && v <= 1) ray.keep(true, ray.middle + t, v, part, nearest);
+      // A ray at the height of a profile's point meets a piece at its very end.
+      if (v >= -slack && v <= 1 + slack)
+        ray.keep(true, ray.middle + t, std::clamp(v, 0.0, 1.0), part, nearest);
     }
   }
 }
@@ -169,6 +171,23 @@ class Revolution : public Shape {
     }
   }
   Box bounds() const override { return bounds_; }
+
+  // A piece lies within its control points: each of them turned about Y, in a ring of 16 corners.
+  std::vector<Hull> hulls() const override {
+    constexpr int corners = 16;
+    std::vector<Hull> all;
+    for (const Piece& piece : pieces_) {
+      double radius[4], height[4];
+      to_bernstein(piece.radius, 3, radius), to_bernstein(piece.height, 3, height);
+      Hull& hull = all.emplace_back();
+      for (std::size_t i = 0; i < 4; ++i)
+        for (int corner = 0; corner < corners; ++corner) {
+          const double angle = 2 * pi * corner / corners, r = radius[i] / std::cos(pi / corners);
+          hull.push_back({r * std::cos(angle), height[i], r * std::sin(angle)});
+        }
+    }
+    return all;
+  }
 
   void find(std::span<const Ray> rays, std::span<Meeting> meetings) const override {
     const Profile profile{pieces_.data(), pieces_.size(), groups_.data(), groups_.size(), bounds_};

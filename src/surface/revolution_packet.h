@@ -4,6 +4,7 @@
 #pragma once
 
 #include "surface/revolution_profile.h"
+#include "surface/sextic_lanes.h"
 
 namespace pse::surface::revolution {
 
@@ -27,28 +28,6 @@ template <class Meet>
   }
 }
 
-// The only root in [0, 1] of polynomials (rising powers) with the values at_0 and at_1 at its ends:
-// Newton's method, held in its bracket (roots.cpp: the same for one).
-[[gnu::always_inline]] inline Lanes refine(Answers open, const Lanes (&power)[7], Lanes at_0,
-                                           Lanes at_1, Answers above) {
-  const Lanes zero{}, one = zero + 1;
-  Lanes a = zero, b = one;
-  Lanes x = choose(at_0 * at_1 < 0, at_0 / (at_0 - at_1), zero + 0.5);
-  for (int step = 0; step < 60 && any(open); ++step) {
-    Lanes value = power[6], slope = zero;
-    for (int i = 6; i-- > 0;) slope = slope * x + value, value = value * x + power[i];
-    const Answers before = (value > 0) == above;
-    a = choose(before, x, a), b = choose(before, b, x);
-    const Lanes newton = x - value / slope;
-    const Lanes next = choose((newton > a) & (newton < b), newton, 0.5 * (a + b));
-    const Answers found = value == 0;
-    const Answers done = found | (size(next - x) <= 1e-12) | (next == a) | (next == b);
-    x = choose(open & ~found, next, x);
-    open &= ~done;
-  }
-  return x;
-}
-
 // With w = height - o.y and t = w / d.y: w^2 d.d + 2 w dy o.d + dy^2 (o.o - r^2) = 0.
 [[gnu::always_inline]] inline void meet_piece(Answers which, const Course<Lanes>& rays,
                                               const Piece& piece, double part,
@@ -60,30 +39,37 @@ template <class Meet>
   const Lanes yy = rays.dy * rays.dy, w2 = rays.dd, w1 = 2 * rays.dy * rays.od;
   const Lanes of_h = w1 - 2 * rays.oy * w2;
   const Lanes constant = (rays.oy * w2 - w1) * rays.oy + yy * rays.oo;
-  // Count changes of sign of the Bernstein coefficients; those of 0 have the sign before them.
-  Lanes bernstein[7], power[7], changes{}, before{}, first{};
-  for (int i = 0; i < 7; ++i) {
-    const Lanes c = w2 * piece.hh.bernstein[i] + of_h * piece.h.bernstein[i] -
-                    yy * piece.rr.bernstein[i] + constant;
-    bernstein[i] = c;
-    changes += choose(before * c < 0, Lanes{} + 1, Lanes{});
-    const Lanes sign = choose(c > 0, Lanes{} + 1, choose(c < 0, Lanes{} - 1, before));
-    first = choose(first == 0, sign, first);
-    before = sign;
-  }
-  which &= changes > 0;
+  Lanes bernstein[7], power[7];
+  for (int i = 0; i < 7; ++i)
+    bernstein[i] = w2 * piece.hh.bernstein[i] + of_h * piece.h.bernstein[i] -
+                   yy * piece.rr.bernstein[i] + constant;
+  const Signs whole = signs(bernstein);
+  which &= whole.changes > 0;
   if (!any(which)) return;
   for (int i = 0; i < 7; ++i)
     power[i] = w2 * piece.hh.powers[i] + of_h * piece.h.powers[i] - yy * piece.rr.powers[i];
   power[0] += constant;
-  const Answers once = which & (changes == 1);
+
+  // Of several roots the one that the ray comes to first, where it comes from outside to a piece
+  // that only rises or falls.
+  const Lanes zero{};
+  Bracket bracket{choose(bernstein[6] == 0, zero + 1, zero), zero + 1, bernstein[0], bernstein[6],
+                  whole.first > 0};
+  Answers once = which & (whole.changes == 1);
+  Answers alone = which & (whole.changes > 1);
+  if (const Answers in_order = alone & (rays.begin > rays.least);
+      piece.rising != 0 && any(in_order)) {
+    const Answers last = piece.rising > 0 ? rays.dy < 0 : rays.dy > 0;
+    Answers sure = in_order;
+    once |= isolate(in_order, bernstein, last, bracket, sure);
+    alone &= ~sure;
+  }
   if (any(once)) {
-    const Lanes v = refine(once, power, bernstein[0], bernstein[6], first > 0);
+    const Lanes v = refine(once, power, bracket);
     rays.keep(once, (cubic(piece.height, v) - rays.oy) * rays.per_height, v, part, nearest);
   }
-  const Answers many = which & (changes > 1);
-  if (!any(many)) return;
-  one_by_one(many, rays, nearest, [&](std::size_t k, const auto& ray, auto& own) {
+  if (!any(alone)) return;
+  one_by_one(alone, rays, nearest, [&](std::size_t k, const auto& ray, auto& own) {
     Sextic polynomial;
     for (int i = 0; i < 7; ++i)
       polynomial.powers[i] = power[i][k], polynomial.bernstein[i] = bernstein[i][k];

@@ -61,7 +61,14 @@ struct Search {
       if (before != 0 && (before > 0) != (c[i] > 0)) ++changes;
       before = c[i];
     }
+    // A root at b belongs here, one at a to what lies before.
+    const bool at_end = before != 0 && c[degree] == 0;
+    if (at_end) ++changes;
     if (changes == 0 || full()) return;
+    if (changes == 1 && at_end) {
+      found.at[found.count++] = b;
+      return;
+    }
     if (changes == 1) return refine(a, b, c[0], c[degree], first > 0);
     if (depth == deepest) {
       found.at[found.count++] = 0.5 * (a + b);
@@ -80,6 +87,18 @@ struct Search {
       search(from_end ? left : right, from_end ? a : middle, from_end ? middle : b, depth + 1);
   }
 };
+
+// All roots in [0, 1] that are asked for; c: Bernstein coefficients.
+Roots roots_of(const double* power, const Coefficients& c, std::size_t degree, Which which) {
+  Search search{power, degree, which != Which::all, which == Which::last};
+  const auto at_0 = [&] {
+    if (c[0] == 0 && !search.full()) search.found.at[search.found.count++] = 0;
+  };
+  if (which != Which::last) at_0();
+  search.search(c, 0, 1, 0);
+  if (which == Which::last) at_0();
+  return search.found;
+}
 
 }  // namespace
 
@@ -100,18 +119,14 @@ void to_bernstein(const double* coefficients, std::size_t degree, double* bernst
 Roots roots_in_unit(const double* coefficients, std::size_t degree, bool first_only) {
   Coefficients c{};
   to_bernstein(coefficients, degree, c.data());
-  Search search{coefficients, degree, first_only};
-  search.search(c, 0, 1, 0);
-  return search.found;
+  return roots_of(coefficients, c, degree, first_only ? Which::first : Which::all);
 }
 
 Roots roots_in_unit(const double* coefficients, const double* bernstein, std::size_t degree,
                     Which which) {
   Coefficients c{};
   std::copy_n(bernstein, degree + 1, c.begin());
-  Search search{coefficients, degree, which != Which::all, which == Which::last};
-  search.search(c, 0, 1, 0);
-  return search.found;
+  return roots_of(coefficients, c, degree, which);
 }
 
 }  // namespace pse::surface

@@ -53,6 +53,10 @@ class Scene {
   std::size_t objects() const { return placed_.size(); }
   const Object& object(std::size_t index) const { return placed_[index].object; }
   const Affine& to_object(std::size_t index) const { return placed_[index].to_object; }
+  Vec3 vector_to_object(std::size_t index, const Vec3& v) const {
+    const Placed& placed = placed_[index];
+    return placed.identity ? v : placed.to_object.vector(v);
+  }
   // Around all objects of finite size.
   const Box& bounds() const { return bounds_; }
   // A distance that is nothing in this scene: where rays from a surface may begin.

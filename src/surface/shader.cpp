@@ -282,15 +282,20 @@ void Shader::radiance(std::span<const Ray> rays, double begin_width, float* cons
   std::vector<Hit> hits(n);
   scene_->trace(rays, hits);
   std::vector<Sighting> sightings;
+  std::vector<Ray> shown_rays;
+  std::vector<Hit> shown;
   for (std::size_t i = 0; i < n; ++i) {
+    if (!hits[i].found() && !shades_background()) continue;
     const double t = hits[i].found() ? hits[i].t() : 1;
+    shown_rays.push_back(rays[i]), shown.push_back(hits[i]);
     sightings.push_back(
-        {static_cast<std::uint32_t>(i), &rays[i], begin_width + lens_->pixel_angle() * t, t});
+        {static_cast<std::uint32_t>(i), begin_width + lens_->pixel_angle() * t, t});
   }
   const ir::Module& module = split_->module;
   const auto count = static_cast<std::int64_t>(n);
   const Planes inputs(std::vector<bool>(module.inputs.size(), true), count);
-  names_->write(sightings, hits, inputs.pointers(), shades_background());
+  names_->begin(n, inputs.pointers());
+  names_->write(sightings, shown_rays, shown, inputs.pointers());
   const Planes outputs(std::vector<bool>(module.outputs.size(), true), count);
   RunStatus status{.outer = current_run};
   Scratch scratch;

@@ -35,11 +35,19 @@ struct ShapePoint {
   double u = 0, v = 0;
 };
 
+// Points, two or more, that stand for the smallest convex body which holds them.
+using Hull = std::vector<Vec3>;
+
 class Shape {
  public:
   virtual ~Shape() = default;
   // What the shape reaches; of infinite size for the endless plane.
   virtual Box bounds() const = 0;
+  // Bodies that together hold all of the shape; none where it has no end.
+  virtual std::vector<Hull> hulls() const {
+    const Box box = bounds();
+    return box.bounded() ? std::vector<Hull>{box.corners()} : std::vector<Hull>{};
+  }
   // meetings[i], not found, becomes ray i's first, or stays. It depends on its ray alone, however
   // many others there are. Called from several threads at once. Rays are finite with a direction
   // that is not 0.

@@ -1,6 +1,7 @@
 // From hits to names.
 #include "surface/surface_source.h"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
@@ -99,24 +100,67 @@ NameWriter::NameWriter(const ir::Module& module, std::shared_ptr<const Scene> sc
 // How the place on the surface moves when the place in the picture moves by one pixel along `axis`:
 // the step across the ray, carried along the ray onto the tangent plane.
 Vec3 NameWriter::world_shift(const Shown& s, const Vec3& axis) {
-  const Vec3& d = s.sighting->ray->direction;
+  const Vec3& d = s.ray->direction;
   const Vec3 step = s.sighting->width * normalized(axis - dot(axis, d) * d);
   const double facing = std::min(dot(s.spot->flat, d), -0.001);
   return step - (dot(s.spot->flat, step) / facing) * d;
 }
 
-// The same in the object's frame.
-Vec3 NameWriter::shift(const Shown& s, const Vec3& axis) const {
-  return scene_->to_object(static_cast<std::size_t>(s.object)).vector(world_shift(s, axis));
+namespace {
+
+// Two numbers and two vectors side by side: what every processor does at once.
+using Pair [[gnu::vector_size(16)]] = double;
+struct Vec3s {
+  Pair x, y, z;
+};
+Vec3s operator-(const Vec3s& a, const Vec3s& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vec3s operator*(Pair s, const Vec3s& a) { return {s * a.x, s * a.y, s * a.z}; }
+Pair dot(const Vec3s& a, const Vec3s& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Vec3s both(const Vec3& a, const Vec3& b) {
+  return {Pair{a.x, b.x}, Pair{a.y, b.y}, Pair{a.z, b.z}};
 }
 
-template <class Put>
-void NameWriter::each(const Wanted& wanted, std::span<const Shown> shown, const Put& put) const {
+}  // namespace
+
+// The same of many, with the same bits, in their objects' frames.
+void NameWriter::set_shifts(std::span<Shown> shown) const {
+  for (std::size_t k = 0; k < shown.size(); k += 2) {
+    Shown &one = shown[k], &other = shown[std::min(k + 1, shown.size() - 1)];
+    const Vec3s d = both(one.ray->direction, other.ray->direction),
+                flat = both(one.spot->flat, other.spot->flat);
+    const Pair width{one.sighting->width, other.sighting->width}, zero{};
+    const Pair slope = dot(flat, d), facing = slope < -0.001 ? slope : zero - 0.001;
+    for (Vec3 Shown::*shift : {&Shown::dx, &Shown::dy}) {
+      const Vec3& axis = shift == &Shown::dx ? right_ : up_;
+      const Vec3s along = both(axis, axis), across = along - dot(along, d) * d;
+      const Pair square = dot(across, across);
+      const Pair size{std::sqrt(square[0]), std::sqrt(square[1])};
+      const Vec3s step = width * ((size > 0 ? 1 / size : zero + 1) * across);
+      const Vec3s moved = step - (dot(flat, step) / facing) * d;
+      const auto put = [&](Shown& s, const Vec3& v) {
+        if (s.object >= 0)
+          s.*shift = scene_->vector_to_object(static_cast<std::size_t>(s.object), v);
+      };
+      put(one, {moved.x[0], moved.y[0], moved.z[0]});
+      put(other, {moved.x[1], moved.y[1], moved.z[1]});
+    }
+  }
+}
+
+void NameWriter::write_one(const Wanted& wanted, std::span<const Shown> shown,
+                           const Outs& outs) const {
   const auto all = [&](const auto& value) {
-    for (const Shown& s : shown) put(s, value(s));
+    const bool complete = outs[0] != nullptr && outs[1] != nullptr && outs[2] != nullptr;
+    for (const Shown& s : shown) {
+      const Vec3& v = value(s);
+      const std::uint32_t i = s.sighting->sample;
+      if (complete || outs[0] != nullptr) outs[0][i] = static_cast<float>(v.x);
+      if (complete || outs[1] != nullptr) outs[1][i] = static_cast<float>(v.y);
+      if (complete || outs[2] != nullptr) outs[2][i] = static_cast<float>(v.z);
+    }
   };
   const auto one = [&](const auto& value) {
-    for (const Shown& s : shown) put(s, Vec3{value(s), 0, 0});
+    for (const Shown& s : shown) outs[0][s.sighting->sample] = static_cast<float>(value(s));
   };
   const auto axes = [&](int which) {
     all([&](const Shown& s) {
@@ -149,9 +193,9 @@ void NameWriter::each(const Wanted& wanted, std::span<const Shown> shown, const 
       return one([](const Shown& s) { return s.object < 0 ? far_away : s.sighting->depth; });
     case What::hit: return one([](const Shown& s) { return s.object < 0 ? 0.0 : 1.0; });
     case What::backface: return one([](const Shown& s) { return s.spot->back ? 1.0 : 0.0; });
-    case What::view: return all([](const Shown& s) { return -s.sighting->ray->direction; });
-    case What::origin: return all([](const Shown& s) { return s.sighting->ray->origin; });
-    case What::direction: return all([](const Shown& s) { return s.sighting->ray->direction; });
+    case What::view: return all([](const Shown& s) { return -s.ray->direction; });
+    case What::origin: return all([](const Shown& s) { return s.ray->origin; });
+    case What::direction: return all([](const Shown& s) { return s.ray->direction; });
     case What::pixelsize: return one(size);
     case What::pixel_freq:
       return one([&](const Shown& s) { return 0.5 / static_cast<float>(size(s)); });
@@ -171,31 +215,39 @@ void NameWriter::each(const Wanted& wanted, std::span<const Shown> shown, const 
   }
 }
 
-void NameWriter::write(std::span<const Sighting> sightings, std::span<const Hit> hits,
-                       std::span<float* const> planes, bool misses) const {
-  // What is shown: objects, and the background where it is shaded.
+void NameWriter::begin(std::size_t count, std::span<float* const> planes) const {
+  for (const Wanted& wanted : wanted_)
+    if (wanted.what == What::id && planes[wanted.input] != nullptr)
+      std::fill_n(planes[wanted.input], count, 0.0f);
+}
+
+void NameWriter::write(std::span<const Sighting> sightings, std::span<const Ray> rays,
+                       std::span<const Hit> hits, std::span<float* const> planes) const {
+  // What objects look like; the background looks like nothing.
   thread_local std::vector<Shown> shown;
-  thread_local std::vector<Ray> rays;
-  thread_local std::vector<Hit> found;
+  thread_local std::vector<Ray> object_rays;
+  thread_local std::vector<Hit> object_hits;
   thread_local std::vector<Spot> spots;
-  shown.clear(), rays.clear(), found.clear();
-  for (std::size_t k = 0; k < sightings.size(); ++k) {
-    if (hits[k].found()) rays.push_back(*sightings[k].ray), found.push_back(hits[k]);
-    if (hits[k].found() || misses) shown.push_back({&sightings[k], nullptr, hits[k].object, {}, {}});
+  spots.resize(hits.size());
+  if (wants_spots_ && std::ranges::all_of(hits, &Hit::found)) {
+    scene_->describe(rays, hits, wants_uv_, spots);
+  } else if (wants_spots_) {
+    object_rays.clear(), object_hits.clear();
+    for (std::size_t k = 0; k < hits.size(); ++k)
+      if (hits[k].found()) object_rays.push_back(rays[k]), object_hits.push_back(hits[k]);
+    scene_->describe(object_rays, object_hits, wants_uv_, spots);
   }
-  spots.resize(rays.size());
-  if (wants_spots_) scene_->describe(rays, found, wants_uv_, spots);
   static const Spot nothing;
   const Spot* next = spots.data();
-  for (Shown& s : shown) {
-    s.spot = s.object < 0 ? &nothing : next++;
-    if (wants_shifts_ && s.object >= 0) s.dx = shift(s, right_), s.dy = shift(s, up_);
-  }
+  shown.resize(hits.size());
+  for (std::size_t k = 0; k < hits.size(); ++k)
+    shown[k] = {&sightings[k], &rays[k], hits[k].found() ? next++ : &nothing, hits[k].object, {}, {}};
+  if (wants_shifts_) set_shifts(shown);
 
   // The components of a vector stand side by side and are computed once.
   for (std::size_t k = 0; k < wanted_.size(); ++k) {
     const Wanted& wanted = wanted_[k];
-    std::array<float*, 3> outs{};
+    Outs outs{};
     outs[static_cast<std::size_t>(wanted.component)] = planes[wanted.input];
     while (k + 1 < wanted_.size() && wanted_[k + 1].what == wanted.what &&
            wanted_[k + 1].light == wanted.light &&
@@ -203,15 +255,7 @@ void NameWriter::write(std::span<const Sighting> sightings, std::span<const Hit>
       ++k;
       outs[static_cast<std::size_t>(wanted_[k].component)] = planes[wanted_[k].input];
     }
-    if (wanted.what == What::id && outs[0] != nullptr)
-      for (const Sighting& s : sightings) outs[0][s.sample] = 0;
-    if (outs == std::array<float*, 3>{}) continue;
-    each(wanted, shown, [&](const Shown& s, const Vec3& v) {
-      const std::uint32_t i = s.sighting->sample;
-      if (outs[0] != nullptr) outs[0][i] = static_cast<float>(v.x);
-      if (outs[1] != nullptr) outs[1][i] = static_cast<float>(v.y);
-      if (outs[2] != nullptr) outs[2][i] = static_cast<float>(v.z);
-    });
+    if (outs != Outs{}) write_one(wanted, shown, outs);
   }
 }
 
@@ -230,28 +274,46 @@ void set_scene_uniforms(const ir::Module& module, std::span<const Light> lights,
 
 SurfaceSource::SurfaceSource(const ir::Module& module, std::shared_ptr<const Scene> scene,
                              const Lens& lens, bool misses)
-    : scene_(scene), lens_(lens), names_(module, std::move(scene), lens), misses_(misses) {}
+    : scene_(scene),
+      lens_(lens),
+      cover_(*scene, lens),
+      names_(module, std::move(scene), lens),
+      misses_(misses) {}
 
 namespace {
 
 // The order in which rays are sent: where samples are rows of a picture, in blocks of 4 by 2 pixels,
-// so that eight rays in a row lie side by side. (What a sample shows does not depend on it.)
-void in_blocks(std::span<const double> y, std::vector<std::uint32_t>& order) {
-  order.clear();
-  std::size_t row = 1;
-  while (row < y.size() && y[row] == y[0]) ++row;
-  const std::size_t rows = y.size() / row;
-  const auto add = [&](std::size_t i) { order.push_back(static_cast<std::uint32_t>(i)); };
-  if (row < 8 || row * rows != y.size()) {
-    for (std::size_t i = 0; i < y.size(); ++i) add(i);
-    return;
+// so that eight rays in a row lie side by side. (What a sample shows does not depend on it.) The
+// last one made is kept, since most tiles have the same.
+class Order {
+ public:
+  std::span<const std::uint32_t> of(std::span<const double> y) {
+    std::size_t row = 1;
+    while (row < y.size() && y[row] == y[0]) ++row;
+    if (row != row_ || y.size() != order_.size()) make(row, y.size());
+    return order_;
   }
-  for (std::size_t top = 0; top < rows; top += 2)
-    for (std::size_t left = 0; left < row; left += 4)
-      for (std::size_t down = top; down < std::min(top + 2, rows); ++down)
-        for (std::size_t across = left; across < std::min(left + 4, row); ++across)
-          add(down * row + across);
-}
+
+ private:
+  void make(std::size_t row, std::size_t count) {
+    row_ = row;
+    order_.clear();
+    const std::size_t rows = count / row;
+    const auto add = [&](std::size_t i) { order_.push_back(static_cast<std::uint32_t>(i)); };
+    if (row < 8 || row * rows != count) {
+      for (std::size_t i = 0; i < count; ++i) add(i);
+      return;
+    }
+    for (std::size_t top = 0; top < rows; top += 2)
+      for (std::size_t left = 0; left < row; left += 4)
+        for (std::size_t down = top; down < std::min(top + 2, rows); ++down)
+          for (std::size_t across = left; across < std::min(left + 4, row); ++across)
+            add(down * row + across);
+  }
+
+  std::size_t row_ = 0;
+  std::vector<std::uint32_t> order_;
+};
 
 }  // namespace
 
@@ -259,41 +321,59 @@ void in_blocks(std::span<const double> y, std::vector<std::uint32_t>& order) {
 void SurfaceSource::fill(std::span<const double> x, std::span<const double> y,
                          std::span<float* const> planes) const {
   constexpr std::size_t piece = 256;
-  thread_local std::vector<std::uint32_t> order;
-  in_blocks(y, order);
-  for (std::size_t i = 0; i < x.size(); i += piece)
-    fill_some(x, y, std::span(order).subspan(i, std::min(piece, x.size() - i)), planes);
+  thread_local Order order;
+  thread_local std::vector<std::uint32_t> near, empty;
+  near.resize(x.size()), empty.resize(x.size());
+  std::size_t nears = 0, empties = 0;
+  for (const std::uint32_t i : order.of(y)) {
+    near[nears] = empty[empties] = i;
+    ++(cover_.may_show(x[i], y[i]) ? nears : empties);
+  }
+  near.resize(nears), empty.resize(empties);
+  names_.begin(x.size(), planes);
+  const auto in_pieces = [&](const std::vector<std::uint32_t>& samples, bool are_empty) {
+    for (std::size_t i = 0; i < samples.size(); i += piece)
+      fill_some(x, y, std::span(samples).subspan(i, std::min(piece, samples.size() - i)), are_empty,
+                planes);
+  };
+  in_pieces(near, false);
+  if (misses_) in_pieces(empty, true);
 }
 
 void SurfaceSource::fill_some(std::span<const double> x, std::span<const double> y,
-                              std::span<const std::uint32_t> samples,
+                              std::span<const std::uint32_t> samples, bool empty,
                               std::span<float* const> planes) const {
   thread_local std::vector<Ray> rays;
   thread_local std::vector<Hit> hits;
   thread_local std::vector<Sighting> sightings;
-  sightings.clear();
-  rays.resize(samples.size()), hits.resize(samples.size());
+  rays.resize(samples.size()), hits.assign(samples.size(), {});
   lens_.rays(x, y, samples, rays);
-  scene_->trace(rays, hits);
+  if (!empty) scene_->trace(rays, hits);
+  // What is shown, moved together.
+  sightings.resize(samples.size());
+  std::size_t count = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (!hits[k].found() && !misses_) {
-      sightings.push_back({samples[k], &rays[k], 0, 0});
-      continue;
-    }
+    if (!hits[k].found() && !misses_) continue;
     const double t = hits[k].found() ? hits[k].t() : 1;
-    sightings.push_back({samples[k], &rays[k], lens_.width(rays[k], t), lens_.depth(rays[k], t)});
+    sightings[count] = {samples[k], lens_.width(rays[k], t), lens_.depth(rays[k], t)};
+    hits[count] = hits[k], rays[count] = rays[k];
+    ++count;
   }
-  names_.write(sightings, hits, planes, misses_);
+  names_.write(std::span(sightings).first(count), std::span(rays).first(count),
+               std::span(hits).first(count), planes);
 }
 
 TileSource at_pixel_centres(std::shared_ptr<const SampleSource> source, double sample_x,
                             double sample_y) {
   return [source = std::move(source), sample_x, sample_y](const TileView& tile) {
     thread_local std::vector<double> x, y;
-    x.clear(), y.clear();
-    for (int row = tile.rect.y0; row < tile.rect.y1; ++row)
+    x.resize(static_cast<std::size_t>(tile.count)), y.resize(x.size());
+    auto next_x = x.begin(), next_y = y.begin();
+    for (int row = tile.rect.y0; row < tile.rect.y1; ++row) {
       for (int column = tile.rect.x0; column < tile.rect.x1; ++column)
-        x.push_back(column + sample_x), y.push_back(row + sample_y);
+        *next_x++ = column + sample_x;
+      next_y = std::fill_n(next_y, tile.rect.width(), row + sample_y);
+    }
     source->fill(x, y, tile.planes);
   };
 }

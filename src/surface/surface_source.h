@@ -8,7 +8,7 @@
 #include "stream/executor.h"
 #include "stream/image_plane.h"
 #include "stream/sample_source.h"
-#include "surface/scene.h"
+#include "surface/cover.h"
 
 namespace pse::surface {
 
@@ -16,10 +16,9 @@ namespace pse::surface {
 // `light2_direction`.
 std::vector<StreamName> surface_names(std::size_t lights);
 
-// A sample's ray, and how wide a pixel is where it meets something.
+// A sample that sends a ray, and how wide a pixel is where that meets something.
 struct Sighting {
   std::uint32_t sample = 0;  // its index in the planes
-  const Ray* ray = nullptr;
   double width = 0;  // of a pixel across the ray, metres
   double depth = 0;
 };
@@ -35,14 +34,18 @@ class NameWriter {
   }
 
   // planes[i] receives module input i, for those that are names of surfaces; null: not wanted.
-  // hits[k] is what sighting k met. Without `misses`, samples that show nothing get their `id` only.
-  void write(std::span<const Sighting> sightings, std::span<const Hit> hits,
-             std::span<float* const> planes, bool misses) const;
+  // First `count` samples show nothing: their id is 0, other names are left alone.
+  void begin(std::size_t count, std::span<float* const> planes) const;
+  // Then what is shown. hits[k] is what sighting k met with rays[k]; those that met nothing are the
+  // background.
+  void write(std::span<const Sighting> sightings, std::span<const Ray> rays,
+             std::span<const Hit> hits, std::span<float* const> planes) const;
 
  private:
   // What a sample shows: a sighting with its spot, and how `point` moves from pixel to pixel.
   struct Shown {
     const Sighting* sighting;
+    const Ray* ray;
     const Spot* spot;
     int object;
     Vec3 dx, dy;  // where wanted
@@ -59,11 +62,11 @@ class NameWriter {
     std::size_t light;
   };
   static std::optional<Wanted> find(const std::string& name, std::size_t lights);
-  // Calls put(shown, value) with the value of a name at each sample.
-  template <class Put>
-  void each(const Wanted& wanted, std::span<const Shown> shown, const Put& put) const;
+  // The planes of a vector's components, or of a number; null where not wanted.
+  using Outs = std::array<float*, 3>;
+  void write_one(const Wanted& wanted, std::span<const Shown> shown, const Outs& outs) const;
   static Vec3 world_shift(const Shown& s, const Vec3& axis);
-  Vec3 shift(const Shown& s, const Vec3& axis) const;
+  void set_shifts(std::span<Shown> shown) const;
 
   std::shared_ptr<const Scene> scene_;
   Vec3 right_, up_;
@@ -88,11 +91,14 @@ class SurfaceSource : public SampleSource {
   }
 
  private:
+  // Of samples that may show something, or of such as do not (`empty`).
   void fill_some(std::span<const double> x, std::span<const double> y,
-                 std::span<const std::uint32_t> samples, std::span<float* const> planes) const;
+                 std::span<const std::uint32_t> samples, bool empty,
+                 std::span<float* const> planes) const;
 
   std::shared_ptr<const Scene> scene_;
   Lens lens_;
+  Cover cover_;
   NameWriter names_;
   bool misses_;
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <vector>
 
 namespace pse::surface {
 
@@ -50,6 +51,13 @@ struct Box {
   bool bounded() const { return !empty() && is_finite(lower) && is_finite(upper); }
   void add(const Vec3& p) { lower = least(lower, p), upper = greatest(upper, p); }
   void add(const Box& box) { lower = least(lower, box.lower), upper = greatest(upper, box.upper); }
+  std::vector<Vec3> corners() const {
+    std::vector<Vec3> all;
+    for (int k = 0; k < 8; ++k)
+      all.push_back({(k & 1) != 0 ? upper.x : lower.x, (k & 2) != 0 ? upper.y : lower.y,
+                     (k & 4) != 0 ? upper.z : lower.z});
+    return all;
+  }
   Vec3 centre() const { return 0.5 * (lower + upper); }
   double radius() const { return 0.5 * length(upper - lower); }  // of the sphere around it
 };
@@ -83,10 +91,7 @@ struct Affine {
   Vec3 transposed(const Vec3& v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
   Box box(const Box& b) const {
     Box out;
-    for (int corner = 0; corner < 8; ++corner)
-      out.add(point({(corner & 1) != 0 ? b.upper.x : b.lower.x,
-                     (corner & 2) != 0 ? b.upper.y : b.lower.y,
-                     (corner & 4) != 0 ? b.upper.z : b.lower.z}));
+    for (const Vec3& corner : b.corners()) out.add(point(corner));
     return out;
   }
 };

@@ -39,6 +39,26 @@ TEST_F(StoredEdges, ARampInAFileIsCutCleanly) {
   EXPECT_TRUE(contains(said_, "\"left\": 0"));
 }
 
+// What is kept from frame to frame is of the frame's own file.
+TEST_F(StoredEdges, EachFrameReadsItsOwnFile) {
+  for (const auto& [frame, shape] : {std::pair{"1", "sphere"}, {"2", "torus"}, {"3", "sphere"}})
+    ASSERT_EQ(
+        pse({"trace", shape, "-o", std::string("g.") + frame + ".exr", "--res", "32x32"}).status,
+        0);
+  file("show.pse", "color = point + frame\n");
+  const auto several = [&](const std::string& input) {
+    const Ended ended =
+        pse({"render", "show.pse", input, "--frames", "1-3", "-o", "out.%d.exr", "--float"});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return std::array{picture("out.1.exr"), picture("out.2.exr"), picture("out.3.exr")};
+  };
+  const auto changing = several("g.%d.exr"), same = several("g.1.exr");
+  EXPECT_EQ(changing[0].planes, same[0].planes);
+  EXPECT_NE(changing[1].planes, same[1].planes);
+  EXPECT_EQ(changing[2].planes, same[2].planes);
+  EXPECT_NE(same[0].planes, same[2].planes);
+}
+
 TEST_F(StoredEdges, ACheckeredTorusShadedAgainIsNearTheTracedOne) {
   file("checks.pse",
        "k = mod(floor(4 * point.x) + floor(4 * point.y + 0.5) + floor(4 * point.z), 2)\n"

@@ -32,6 +32,17 @@ TEST(Grazing, TorusFromTheSide) {
   }
 }
 
+// What lies exactly on the side of its box is met: the tube's outermost points.
+TEST(Grazing, TorusAtItsOutermost) {
+  const auto torus = make_torus(0.75, 0.25);
+  for (const Vec3& way : {Vec3{0, 0, -1}, Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{-1, 0, 0}})
+    EXPECT_EQ(first_hit(*torus, {-4.0 * way, way}).t, 3);
+  for (const double x : {0.75, -0.75}) {
+    EXPECT_EQ(first_hit(*torus, {{x, 4, 0}, {0, -1, 0}}).t, 3.75);
+    EXPECT_EQ(first_hit(*torus, {{0, -4, x}, {0, 1, 0}}).t, 3.75);
+  }
+}
+
 // Over the tube's crest the section has shrunk to s = sqrt(r^2 - h^2), and the ray is seen from
 // x^2 + R^2 = (R + s)^2 on.
 TEST(Grazing, TorusOverItsCrest) {

@@ -100,5 +100,28 @@ TEST(Revolution, AStraightProfileIsACone) {
   EXPECT_LE(differ, 2u);
 }
 
+// A cone of radius 1.25 + h / 2 that is met exactly at a point of its profile, where two pieces
+// join, or half way along one: 0.75^2 + 1 = 1.25^2, and nothing is rounded.
+TEST(Revolution, IsClosedWhereItsPiecesJoin) {
+  const std::vector<std::vector<ProfilePoint>> profiles = {
+      {{0.75, -1}, {1, -0.5}, {1.25, 0}, {1.5, 0.5}, {1.75, 1}},
+      {{1.75, 1}, {1.5, 0.5}, {1.25, 0}, {1, -0.5}, {0.75, -1}},
+      {{0.75, -1}, {1, -0.5}, {1.5, 0.5}, {1.75, 1}}};
+  std::vector<Ray> rays;
+  for (const int from : {-1, 1})
+    for (int up = -64; up <= 64; ++up)
+      for (const double far : {1.0, 2.0, 3.0, 4.0})
+        rays.push_back(
+            {{from * (0.75 + far), up / 64.0 * far, from * 1.0}, {from * -1.0, -up / 64.0, 0}});
+  for (std::size_t profile = 0; profile < profiles.size(); ++profile) {
+    const auto cone = make_revolution(profiles[profile], false);
+    const std::vector<Meeting> meetings = meetings_of(*cone, rays);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const double far = std::abs(rays[i].origin.x) - 0.75;
+      EXPECT_NEAR(meetings[i].t, far, 1e-9) << profile << " " << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pse::surface

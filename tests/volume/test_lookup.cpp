@@ -118,7 +118,7 @@ TEST_F(Lookup, FilesCutAnywhereAreRefused) {
 
 TEST_F(Lookup, DamageIsToldWithPlaceAndRemedy) {
   make_ramp();
-  // A type that no tree has, in the list of grids; then bytes among the voxels of a file's only grid.
+  // A type that no tree has, in the list of grids; then bytes among the voxels of the only grid.
   std::string head = read("ramp.vdb");
   head[head.find("Tree_float") + 5] = 'q';
   file("head.vdb", head);

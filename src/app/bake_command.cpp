@@ -51,6 +51,9 @@ GridNames choose_grids(const lang::Program& tree, const OutputRequest& request) 
   }
   for (const std::string_view name : usual_grids)
     if (has(std::string(name))) grids.names.emplace_back(name);
+  const std::string more = density_wants_more(tree);
+  if (grids.names.empty() && !more.empty())
+    throw Failure(Exit::program, more, "function density(p, ray = 0)");
   if (grids.names.empty())
     throw Failure(Exit::program,
                   fmt::format("the program has nothing to make grids of: it neither sets {} nor "
@@ -94,10 +97,16 @@ Exit bake_command(Session& session) {
   LowerHost host = module_host(program.path, session);
   Textures stored(session, program.path, common.write.working);
   stored.answer(host);
-  const auto compiled =
-      compile(program.sources, program.file, host, compile_with, diagnostics);
+  auto compiled = compile(program.sources, program.file, host, compile_with, diagnostics);
   report(diagnostics, program.sources, session);
   if (!compiled) return Exit::program;
+  // What a function of the program is to blame for is told at that function.
+  if (grids.from_functions) {
+    auto named = std::make_shared<Program>(*compiled);
+    for (ProgramOutput& output : named->outputs)
+      if (const auto head = function_head(tree, output.name)) output.span = *head;
+    compiled = std::move(named);
+  }
   const std::vector<Knob> knobs = apply_settings(compiled->knobs, settings, session.console);
   stored.load(compiled->module());
 

@@ -38,8 +38,7 @@ void write_grids(volume::GridWriter& writer, const std::string& name,
     attributes.clear();
   auto file = image::OutputFile::create(name);
   if (!file) throw Failure(Exit::output, file.error().message);
-  if (const auto written =
-          writer.write(file->path_for_others(), attributes, identity_of(recipe));
+  if (const auto written = writer.write(file->path_for_others(), attributes, identity_of(recipe));
       !written)
     throw Failure(Exit::output, fmt::format("cannot write {}: {}", name, written.error().message));
   if (const auto done = file->commit(); !done) throw Failure(Exit::output, done.error().message);
@@ -150,11 +149,10 @@ Exit BakeJob::run_frame(int index, int frame) {
   // Run.
   progress_.begin_frame(index, frame);
   if (!session_.arguments.has("quiet"))
-    signals_.set_last_words(
-        fmt::format("stopped at frame {}; its file is as it was\n", frame));
+    signals_.set_last_words(fmt::format("stopped at frame {}; its file is as it was\n", frame));
   FrameState state;
-  volume::set_lattice_uniforms(program_->module(), lattice_, {double(frame), common.fps, common.seed},
-                               state);
+  volume::set_lattice_uniforms(program_->module(), lattice_,
+                               {double(frame), common.fps, common.seed}, state);
   set_knob_uniforms(program_->module(), knobs_, state);
   state.externals = inputs_.functions();
   std::vector<volume::GridSpec> specs;
@@ -222,13 +220,14 @@ void BakeJob::report_result(const volume::BakeResult& result, const std::string&
   if (result.not_finite > 0 && options_.common.nan == image::NanPolicy::error) return;
   if (result.active == 0)
     session_.console.warning(
-        fmt::format("{} is empty: there is no matter in the box; --bounds moves it", name));
+        fmt::format("{} is empty: no voxel's centre lies in matter; --bounds moves the box, and "
+                    "what is thinner than a voxel ({:.3g} m) wants a higher --res",
+                    name, *std::max_element(lattice_.voxel().begin(), lattice_.voxel().end())));
   else if (result.cut)
-    session_.console.warning(
-        fmt::format("{}: matter reaches the side of the box and is cut; --bounds makes it larger",
-                    name));
-  session_.console.note(fmt::format("wrote {}: {}x{}x{} voxels, {:.1f} % with matter", name, size[0],
-                                    size[1], size[2],
+    session_.console.warning(fmt::format(
+        "{}: matter reaches the side of the box and is cut; --bounds makes it larger", name));
+  session_.console.note(fmt::format("wrote {}: {}x{}x{} voxels, {:.1f} % with matter", name,
+                                    size[0], size[1], size[2],
                                     100.0 * double(result.active) / double(lattice_.voxels())));
 }
 

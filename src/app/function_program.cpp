@@ -33,7 +33,8 @@ std::optional<Span> find_call(const lang::ExprPtr& expr, const std::string& name
     return among({&unary->operand});
   if (const auto* choice = std::get_if<lang::ConditionalExpr>(&expr->node))
     return among({&choice->condition, &choice->if_true, &choice->if_false});
-  if (const auto* member = std::get_if<lang::MemberExpr>(&expr->node)) return among({&member->base});
+  if (const auto* member = std::get_if<lang::MemberExpr>(&expr->node))
+    return among({&member->base});
   if (const auto* index = std::get_if<lang::IndexExpr>(&expr->node)) return among({&index->base});
   return std::nullopt;
 }
@@ -49,15 +50,38 @@ std::optional<Span> find_call(const lang::Program& tree, const std::string& name
   return std::nullopt;
 }
 
-int required_parameters(const lang::Program& tree, const std::string& name) {
+namespace {
+
+const lang::FunctionStmt* find_function(const lang::Program& tree, const std::string& name) {
   for (const lang::StmtPtr& statement : tree.body) {
     const auto* function = statement ? std::get_if<lang::FunctionStmt>(&statement->node) : nullptr;
-    if (function == nullptr || function->name != name) continue;
-    return static_cast<int>(
-        std::count_if(function->parameters.begin(), function->parameters.end(),
-                      [](const lang::Parameter& p) { return p.default_value == nullptr; }));
+    if (function != nullptr && function->name == name) return function;
   }
-  return -1;
+  return nullptr;
+}
+
+}  // namespace
+
+int required_parameters(const lang::Program& tree, const std::string& name) {
+  const lang::FunctionStmt* function = find_function(tree, name);
+  if (function == nullptr) return -1;
+  return static_cast<int>(
+      std::count_if(function->parameters.begin(), function->parameters.end(),
+                    [](const lang::Parameter& p) { return p.default_value == nullptr; }));
+}
+
+std::optional<Span> function_head(const lang::Program& tree, const std::string& name) {
+  const lang::FunctionStmt* function = find_function(tree, name);
+  return function == nullptr ? std::nullopt : std::optional(function->head);
+}
+
+std::string density_wants_more(const lang::Program& tree) {
+  const int parameters = required_parameters(tree, "density");
+  if (parameters < 2) return "";
+  return fmt::format(
+      "`density` wants {} arguments and there is no ray here, only a place; what else "
+      "it takes needs a default",
+      parameters);
 }
 
 bool sets_at_top(const lang::Program& tree, const std::string& name) {

@@ -14,6 +14,11 @@ namespace pse::app {
 // How many arguments a function of the program must be given at least; -1 where it has none of that
 // name.
 int required_parameters(const lang::Program& tree, const std::string& name);
+// From `function` to the `)` of the function `name`.
+std::optional<Span> function_head(const lang::Program& tree, const std::string& name);
+// Why the function `density` cannot be called with a place alone: a sentence; empty where it can,
+// or where there is none.
+std::string density_wants_more(const lang::Program& tree);
 // Whether the program sets `name` outside its functions.
 bool sets_at_top(const lang::Program& tree, const std::string& name);
 

@@ -41,8 +41,7 @@ Exit show_help(Session& session) {
 }
 
 CompileOptions compile_options(const RenderOptions& options, const InputImages& images,
-                               const Surfaces* surfaces,
-                               const std::vector<KnobSetting>& settings,
+                               const Surfaces* surfaces, const std::vector<KnobSetting>& settings,
                                const lang::Program& tree) {
   CompileOptions compile = compile_settings(options, settings);
   // The names of images hide those of surfaces, and these those of the plane.
@@ -76,9 +75,10 @@ void show_density(ProgramFile& program) {
   const lang::Program tree = lang::parse(program.sources, program.file, ignored);
   if (ignored.has_errors()) return;  // the compiler reports them
   const bool sets = sets_at_top(tree, "density");
+  const std::string more = sets ? "" : density_wants_more(tree);
+  if (!more.empty()) throw usage_error(more, "function density(p, ray = 0)");
   if (!sets && required_parameters(tree, "density") != 1)
-    throw usage_error("--slice shows the density, and the program has none",
-                      "function density(p)");
+    throw usage_error("--slice shows the density, and the program has none", "function density(p)");
   append_lines(program, (sets ? "" : calls_at_point(tree, {"density"})) +
                             "color = [density density density]\nalpha = 1\n");
 }

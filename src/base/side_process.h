@@ -1,16 +1,20 @@
 // A part of this program in a process of its own, for libraries that trust what files say of
-// themselves: the means to talk to it and the limits it lives under. Both ends are the same program,
-// so values go as they lie in memory.
+// themselves: the means to talk to it and the limits it lives under. Both ends are the same
+// program, so values go as they lie in memory.
 #pragma once
 
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
+#include <fstream>
 
 namespace pse::side {
 
@@ -45,17 +49,24 @@ bool put_all(int to, const Values& values) {
          put(to, values.data(), count * sizeof(typename Values::value_type));
 }
 
+// `most`: values that are taken. Memory grows with what has come, not with what is announced.
 template <class Values>
-bool get_all(int from, Values& values) {
-  constexpr std::uint64_t most = std::uint64_t{1} << 30;
+bool get_all(int from, Values& values, std::uint64_t most = std::uint64_t{1} << 30) {
+  constexpr std::uint64_t piece = std::uint64_t{1} << 20;
   std::uint64_t count = 0;
   if (!get(from, &count, sizeof count) || count > most) return false;
-  values.resize(count);
-  return get(from, values.data(), count * sizeof(typename Values::value_type));
+  values.clear();
+  while (values.size() < count) {
+    const std::uint64_t have = values.size(), next = std::min(count, have + std::max(have, piece));
+    values.resize(next);
+    if (!get(from, values.data() + have, (next - have) * sizeof(typename Values::value_type)))
+      return false;
+  }
+  return true;
 }
 
-// Called first in the new process. Of addresses: what is mapped already counts. It says nothing, and
-// a signal to the whole group is for the process that it serves, with which it ends.
+// Called first in the new process. Of addresses: what is mapped already counts. It says nothing,
+// and a signal to the whole group is for the process that it serves, with which it ends.
 inline void settle(rlim_t most_memory, rlim_t most_seconds) {
   const auto limit = [](__rlimit_resource which, rlim_t most) {
     const rlimit value{most, most};
@@ -70,6 +81,58 @@ inline void settle(rlim_t most_memory, rlim_t most_seconds) {
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
   const int nowhere = ::open("/dev/null", O_RDWR);
   ::dup2(nowhere, STDIN_FILENO), ::dup2(nowhere, STDOUT_FILENO), ::dup2(nowhere, STDERR_FILENO);
+}
+
+// Bytes of addresses that this process has mapped: those that a limit of settle() counts from.
+inline rlim_t mapped() {
+  unsigned long long pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return static_cast<rlim_t>(pages) * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
+}
+
+// How a piece of work in a process of its own ended.
+enum class Ended { whole, not_started, took_too_long, broke_down };
+
+// Runs `work(pipe)` in a new process under these limits; true where it has sent all that it had to.
+// `take(pipe)` receives it here and is true where all of it came; what it throws is thrown on.
+template <class Work, class Take>
+Ended run(rlim_t most_memory, rlim_t most_seconds, Work work, Take take) {
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) return Ended::not_started;
+  const pid_t child = ::fork();
+  if (child < 0) {
+    ::close(ends[0]), ::close(ends[1]);
+    return Ended::not_started;
+  }
+  if (child == 0) {
+    settle(most_memory, most_seconds);
+    bool sent = false;
+    try {
+      sent = work(ends[1]);
+    } catch (const std::exception&) {
+    }
+    ::_exit(sent ? 0 : 1);
+  }
+  ::close(ends[1]);
+  const auto wait = [&] {
+    ::close(ends[0]);
+    int status = 0;
+    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    return status;
+  };
+  bool whole = false;
+  try {
+    whole = take(ends[0]);
+  } catch (...) {
+    wait();
+    throw;
+  }
+  const int status = wait();
+  if (whole) return Ended::whole;
+  const bool stopped =
+      WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL);
+  return stopped ? Ended::took_too_long : Ended::broke_down;
 }
 
 }  // namespace pse::side

@@ -17,6 +17,7 @@
 namespace pse::volume {
 
 using image::ErrorKind;
+using image::ImageError;
 using image::fail;
 using image::Result;
 

@@ -1,5 +1,5 @@
-// `pse bake`: what the program says at a voxel's centre is what the file holds there, and nothing is
-// stored where there is nothing.
+// `pse bake`: what the program says at a voxel's centre is what the file holds there, and nothing
+// is stored where there is nothing.
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -68,11 +68,12 @@ TEST_F(Bake, HalfPrecisionRoundsOnceAndFloatKeepsAll) {
 }
 
 TEST_F(Bake, FunctionsAreEnoughAndThePictureIsNotAGrid) {
-  bake("function density(p) return clamp(2 - 4 * length(p), 0, 1)\n"
-       "function color(p, d)\n    return [d, 0.25, p.y]\n"
-       "function temperature(p) return 1000 + 250 * p.x\n"
-       "color = [x y 7]\n",
-       {"--res", "32"});
+  bake(
+      "function density(p) return clamp(2 - 4 * length(p), 0, 1)\n"
+      "function color(p, d)\n    return [d, 0.25, p.y]\n"
+      "function temperature(p) return 1000 + 250 * p.x\n"
+      "color = [x y 7]\n",
+      {"--res", "32"});
   ASSERT_EQ(ended.status, 0) << ended.err;
   const volume::Volume density(grid("density")), color(grid("color")), heat(grid("temperature"));
   EXPECT_EQ(density.components(), 1);
@@ -123,8 +124,8 @@ TEST_F(Bake, ClassesTypesAndProvenanceAreSet) {
   const volume::FileInfo head = info();
   ASSERT_EQ(head.grids.size(), 2u);
   for (const volume::GridInfo& grid : head.grids)
-    EXPECT_EQ(grid.kind, grid.name == "distance" ? volume::GridKind::level_set
-                                                 : volume::GridKind::fog);
+    EXPECT_EQ(grid.kind,
+              grid.name == "distance" ? volume::GridKind::level_set : volume::GridKind::fog);
   EXPECT_TRUE(contains(head.attributes.at("pse/program"), "distance = length(point) - Size"));
   EXPECT_EQ(head.attributes.at("pse/knobs"), "Size=0.25\n");
   EXPECT_EQ(head.attributes.at("pse/up"), "y");
@@ -137,8 +138,7 @@ TEST_F(Bake, LevelSetsAreDistancesInABandAndSignedBeyondIt) {
   ASSERT_EQ(ended.status, 0) << ended.err;
   const volume::Volume grid(this->grid("distance"));
   const float band = 4 * 2.0f / 64;
-  for (const float r : {0.42f, 0.5f, 0.57f})
-    EXPECT_NEAR(at(grid, r, 0, 0), r - 0.5f, 1e-3f) << r;
+  for (const float r : {0.42f, 0.5f, 0.57f}) EXPECT_NEAR(at(grid, r, 0, 0), r - 0.5f, 1e-3f) << r;
   EXPECT_FLOAT_EQ(at(grid, 0.9f, 0, 0), band);
   EXPECT_FLOAT_EQ(at(grid, 0, 0, 0), -band);
   EXPECT_FLOAT_EQ(at(grid, 5, 5, 5), band);
@@ -187,6 +187,27 @@ TEST_F(Bake, MatterThatIsCutOrMissingIsSaid) {
   EXPECT_FALSE(contains(ended.err, "reaches"));
   bake("density = -1\n", {"--res", "8"});
   EXPECT_TRUE(contains(ended.err, "is empty"));
+  // A hair between the centres of voxels: these lie at odd eighths.
+  bake("density = abs(x) < 0.01 ? 1 : 0\n", {"--res", "8"});
+  EXPECT_TRUE(contains(ended.err, "thinner than a voxel (0.25 m) wants a higher --res"))
+      << ended.err;
+}
+
+TEST_F(Bake, FunctionsAreBlamedAtTheirHeads) {
+  bake("Size = 1\n\nfunction density(p)\n    return sqrt(p.x)\n", {"--res", "8"});
+  EXPECT_TRUE(contains(ended.err, "a.pse:3:1: warning:")) << ended.err;
+  EXPECT_TRUE(contains(ended.err, "   3 | function density(p)\n     | ^~~")) << ended.err;
+}
+
+TEST_F(Bake, ADensityOfARayIsNoVolume) {
+  const std::string text = "function density(p, t)\n    return t\n";
+  bake(text, {"--res", "8"});
+  EXPECT_EQ(ended.status, 3);
+  EXPECT_TRUE(contains(ended.err, "`density` wants 2 arguments")) << ended.err;
+  EXPECT_TRUE(contains(ended.err, "function density(p, ray = 0)")) << ended.err;
+  file("a.pse", text);
+  ended = pse({"render", "a.pse", "--slice", "z=0", "-o", "a.png", "--res", "8"});
+  EXPECT_TRUE(contains(ended.err, "`density` wants 2 arguments")) << ended.err;
 }
 
 TEST_F(Bake, MemoryIsBounded) {
@@ -229,8 +250,8 @@ TEST_F(Bake, ProgramsWithoutMatterAndErrorsHaveTheirExitStatus) {
 // A cube from -1 to 1 with faces of two triangles, outward; `faces` of the six are there.
 std::string cube(int faces) {
   std::string text;
-  for (const char* v : {"-1 -1 -1", "1 -1 -1", "1 1 -1", "-1 1 -1", "-1 -1 1", "1 -1 1", "1 1 1",
-                        "-1 1 1"})
+  for (const char* v :
+       {"-1 -1 -1", "1 -1 -1", "1 1 -1", "-1 1 -1", "-1 -1 1", "1 -1 1", "1 1 1", "-1 1 1"})
     text += std::string("v ") + v + "\n";
   const char* const sides[] = {"1 4 3 2", "5 6 7 8", "1 5 8 4", "2 3 7 6", "4 8 7 3", "1 2 6 5"};
   for (int f = 0; f < faces; ++f) text += std::string("f ") + sides[f] + "\n";

@@ -43,10 +43,10 @@ TEST_F(Lookup, IsLinearBetweenVoxelsAndExactAtThem) {
 
 TEST_F(Lookup, GridsAreChosenByName) {
   make_ramp();
-  const image::Image image =
-      render("c = volume(\"ramp.vdb\", 0.5 * [x y 0], grid = \"color\")\n"
-             "d = volume(\"ramp.vdb\", 0.5 * [x y 0], \"density\")\n"
-             "wrong = max(abs(c.x - 0.5 * x - 2), abs(d - 0.5 * x - y - 8))\n");
+  const image::Image image = render(
+      "c = volume(\"ramp.vdb\", 0.5 * [x y 0], grid = \"color\")\n"
+      "d = volume(\"ramp.vdb\", 0.5 * [x y 0], \"density\")\n"
+      "wrong = max(abs(c.x - 0.5 * x - 2), abs(d - 0.5 * x - y - 8))\n");
   for (const float value : image.planes[static_cast<std::size_t>(image.spec.find("wrong.Y"))])
     ASSERT_LT(value, 1e-5f);
 }
@@ -54,8 +54,9 @@ TEST_F(Lookup, GridsAreChosenByName) {
 TEST_F(Lookup, CompiledAndInterpretedHaveTheSameBits) {
   file("n.pse", "density = max(0, Noise(5 * point))\n");
   ASSERT_EQ(pse({"bake", "n.pse", "-o", "n.vdb", "--res", "40"}).status, 0);
-  const std::string text = "a = volume(\"n.vdb\", [1.3 * x, 1.3 * y, 0.3 * x])\nb = 1 / (x - x) * a\n"
-                           "c = volume(\"n.vdb\", [x, y, 1 / (x - x)])\n";
+  const std::string text =
+      "a = volume(\"n.vdb\", [1.3 * x, 1.3 * y, 0.3 * x])\nb = 1 / (x - x) * a\n"
+      "c = volume(\"n.vdb\", [x, y, 1 / (x - x)])\n";
   const image::Image one = render(text);
   for (const char* width : {"1", "4", "8", "16"}) {
     const image::Image other = render(text, {"--width", width});
@@ -72,9 +73,9 @@ TEST_F(Lookup, CompiledAndInterpretedHaveTheSameBits) {
 TEST_F(Lookup, PicturesAreSlices) {
   // Eight slices of 8 x 8; voxel (i, j, k) holds i + 16 j + 256 k.
   file("slice.pse", "v = (px - 0.5) + 16 * (7.5 - py) + 256 * frame\n");
-  ASSERT_EQ(pse({"render", "slice.pse", "-o", "s.%02d.exr", "-f", "0-7", "--res", "8", "--float"})
-                .status,
-            0);
+  ASSERT_EQ(
+      pse({"render", "slice.pse", "-o", "s.%02d.exr", "-f", "0-7", "--res", "8", "--float"}).status,
+      0);
   // The stack is a cube from -1/2 to 1/2 with centres at odd sixteenths.
   const image::Image image = render(
       "i = floor(px / 4)\nj = floor((32 - py) / 4)\n"
@@ -90,11 +91,15 @@ TEST_F(Lookup, ErrorsSayWhatIsThere) {
   make_ramp();
   EXPECT_TRUE(contains(error_of("a = volume(\"ramp.vdb\", point, \"smoke\")\n", 4),
                        "ramp.vdb has no grid `smoke`; it has color, density"));
-  EXPECT_TRUE(contains(error_of("a = volume(\"none.vdb\", point)\n", 4), "there is no file none.vdb"));
-  EXPECT_TRUE(contains(error_of("a = volume(\"none.%04d.exr\", point)\n", 4), "there are no pictures"));
+  EXPECT_TRUE(
+      contains(error_of("a = volume(\"none.vdb\", point)\n", 4), "there is no file none.vdb"));
+  EXPECT_TRUE(
+      contains(error_of("a = volume(\"none.%04d.exr\", point)\n", 4), "there are no pictures"));
   file("text.vdb", "this is no grid");
-  EXPECT_TRUE(contains(error_of("a = volume(\"text.vdb\", point)\n", 4), "text.vdb is not a VDB file"));
-  EXPECT_TRUE(contains(error_of("a = volume(\"ramp.vdb\")\n", 3), "needs the name of a file and a point"));
+  EXPECT_TRUE(
+      contains(error_of("a = volume(\"text.vdb\", point)\n", 4), "text.vdb is not a VDB file"));
+  EXPECT_TRUE(
+      contains(error_of("a = volume(\"ramp.vdb\")\n", 3), "needs the name of a file and a point"));
   EXPECT_TRUE(contains(error_of("a = volume(3, point)\n", 3), "the file of `volume` is a text"));
   EXPECT_TRUE(contains(error_of("a = volume(\"ramp.vdb\", [1 2])\n", 3), "a vector of three"));
 }
@@ -109,6 +114,29 @@ TEST_F(Lookup, FilesCutAnywhereAreRefused) {
     EXPECT_EQ(cut.status, 4) << k << cut.err;
     EXPECT_TRUE(contains(cut.err, "cut.vdb is damaged or cut off")) << cut.err;
   }
+}
+
+TEST_F(Lookup, DamageIsToldWithPlaceAndRemedy) {
+  make_ramp();
+  // A type that no tree has, in the list of grids; then bytes among the voxels of the only grid.
+  std::string head = read("ramp.vdb");
+  head[head.find("Tree_float") + 5] = 'q';
+  file("head.vdb", head);
+  const std::string first = error_of("a = volume(\"head.vdb\", point)\n", 4);
+  EXPECT_TRUE(contains(first,
+                       "head.vdb is damaged or cut off: its head cannot be read; copy or "
+                       "write the file anew (OpenVDB: "))
+      << first;
+  EXPECT_TRUE(contains(first, "a.pse:1:12")) << first;
+  file("one.pse", "density = 8 + unoise(5 * point)\n");
+  ASSERT_EQ(pse({"bake", "one.pse", "-o", "one.vdb", "--res", "32"}).status, 0);
+  std::string voxels = read("one.vdb");
+  for (std::size_t at = voxels.size() / 2; at < voxels.size() * 3 / 4; at += 8) voxels[at] ^= 0x55;
+  file("voxels.vdb", voxels);
+  const std::string second = error_of("a = volume(\"voxels.vdb\", point)\n", 4);
+  EXPECT_TRUE(contains(second, "voxels.vdb is damaged or cut off: grid `density` cannot be read") ||
+              contains(second, "not enough memory to read voxels.vdb"))
+      << second;
 }
 
 TEST_F(Lookup, DamagedFilesNeverCrashOrHang) {

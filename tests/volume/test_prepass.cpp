@@ -88,6 +88,17 @@ TEST_F(Prepass, HypertextureAloneSaysWhereItsMatterIs) {
   EXPECT_LT(apart, 0.005);
 }
 
+// Rays of the middle column and row run along sides of the box, where a place of entry has no bounds.
+TEST_F(Prepass, AHairInTheStudioIsWhole) {
+  file("a.pse",
+       "function density(p)\n"
+       "    return norm([p.x - 0.1 * sin(4 * p.y), p.z]) < 0.01 and abs(p.y) < 1 ? 1 : 0\n"
+       "color = hypertexture(density)\n");
+  const image::Image whole = render({}), fast = render({"--prepass", "4", "--stats"});
+  EXPECT_TRUE(contains(ended.err, "nothing is missed")) << ended.err;
+  EXPECT_EQ(whole.planes, fast.planes);
+}
+
 TEST_F(Prepass, TellsOfSpecksThatItCannotSee) {
   // Motes of a third of a pixel's size, far apart: no search sees them all, so it is said.
   program("    return length(fract(16 * p) - 0.5) < 0.12 ? 0.9 : 0\n");

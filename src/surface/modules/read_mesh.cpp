@@ -1,12 +1,9 @@
-// Assimp in a child process. Its readers trust what files say of themselves: a few changed bytes of a
-// PLY file make them run for minutes, stop the process, or write where they should not.
+// Assimp in a child process. Its readers trust what files say of themselves: a few changed bytes of
+// a PLY file make them run for minutes, stop the process, or write where they should not.
 #include "surface/modules/read_mesh.h"
 
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
-#include <fcntl.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <assimp/Importer.hpp>
 #include <filesystem>
@@ -69,43 +66,36 @@ std::string read_here(const std::string& file, Mesh& mesh) {
   }
 }
 
-// Never returns.
-[[noreturn]] void run_child(int pipe, const std::string& file, rlim_t seconds) {
-  side::settle(most_memory, seconds);
-  Mesh mesh;
-  const std::string error = read_here(file, mesh);
-  const bool sent = side::put_all(pipe, error) && side::put_all(pipe, mesh.positions) &&
-                    side::put_all(pipe, mesh.normals) && side::put_all(pipe, mesh.uvs) &&
-                    side::put_all(pipe, mesh.triangles);
-  ::_exit(sent ? 0 : 1);
-}
-
 }  // namespace
 
 bool read_in_child(const std::string& file, Mesh& mesh, std::string& error) {
   std::error_code ignored;
   const auto megabytes = static_cast<rlim_t>(std::filesystem::file_size(file, ignored) >> 20);
-  int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) return error = "no process can be started to read it", false;
-  const pid_t child = ::fork();
-  if (child < 0) {
-    ::close(ends[0]), ::close(ends[1]);
-    return error = "no process can be started to read it", false;
+  const auto read = [&](int pipe) {
+    error = read_here(file, mesh);
+    return side::put_all(pipe, error) && side::put_all(pipe, mesh.positions) &&
+           side::put_all(pipe, mesh.normals) && side::put_all(pipe, mesh.uvs) &&
+           side::put_all(pipe, mesh.triangles);
+  };
+  const auto take = [&](int pipe) {
+    return side::get_all(pipe, error) && side::get_all(pipe, mesh.positions) &&
+           side::get_all(pipe, mesh.normals) && side::get_all(pipe, mesh.uvs) &&
+           side::get_all(pipe, mesh.triangles);
+  };
+  switch (side::run(most_memory, 5 + megabytes, read, take)) {
+    case side::Ended::whole:
+      break;
+    case side::Ended::not_started:
+      error = "no process can be started to read it";
+      break;
+    case side::Ended::took_too_long:
+      error = "reading it takes too long; the file is damaged, or too large for its form";
+      break;
+    case side::Ended::broke_down:
+      error = "the file is damaged: its reader broke down";
+      break;
   }
-  if (child == 0) run_child(ends[1], file, 5 + megabytes);
-  ::close(ends[1]);
-  const bool whole = side::get_all(ends[0], error) && side::get_all(ends[0], mesh.positions) &&
-                     side::get_all(ends[0], mesh.normals) && side::get_all(ends[0], mesh.uvs) &&
-                     side::get_all(ends[0], mesh.triangles);
-  ::close(ends[0]);
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (!whole)
-    error = WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL)
-                ? "reading it takes too long; the file is damaged, or too large for its form"
-                : "the file is damaged: its reader broke down";
-  return whole && error.empty();
+  return error.empty();
 }
 
 }  // namespace pse::surface

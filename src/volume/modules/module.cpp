@@ -8,10 +8,10 @@ class Library : public Vdb {
  public:
   Library() { openvdb::initialize(); }
 
-  Result<FileInfo> info(const std::string& file) override { return read_info(file); }
+  Result<FileInfo> info(const std::string& file) override { return read_info_aside(file); }
   Result<GridData> read(const std::string& file, const std::string& name,
                         std::size_t limit) override {
-    return read_grid(file, name, limit);
+    return read_grid_aside(file, name, limit);
   }
   std::unique_ptr<GridWriter> writer(std::vector<GridSpec> grids,
                                      const GridPlace& place) override {

@@ -32,19 +32,25 @@ std::string shortened(const std::string& text) {
   return clean;
 }
 
-// Opens, runs, and turns what OpenVDB throws into an error that names the file.
+// Opens, runs, and turns what OpenVDB throws into an error that names the file and `part`, what the
+// work reads of it.
 template <class Work>
-auto guarded(const std::string& file, Work work) -> decltype(work(std::declval<openvdb::io::File&>())) {
+auto guarded(const std::string& file, const std::string& part, Work work)
+    -> decltype(work(std::declval<openvdb::io::File&>())) {
   if (const auto start = check_structure(file); !start) return std::unexpected(start.error());
+  std::string where = "its head";
   try {
     openvdb::io::File in(file);
     in.setCopyMaxBytes(0);
     in.open(false);  // no delayed loading: what is damaged shows here
+    where = part;
     return work(in);
   } catch (const std::bad_alloc&) {
     return fail(ErrorKind::too_large, "not enough memory to read " + file + "; it may be damaged");
   } catch (const std::exception& problem) {
-    return fail(ErrorKind::damaged, file + " is damaged or cut off: " + shortened(problem.what()));
+    return fail(ErrorKind::damaged, file + " is damaged or cut off: " + where +
+                                        " cannot be read; copy or write the file anew (OpenVDB: " +
+                                        shortened(problem.what()) + ")");
   }
 }
 
@@ -118,7 +124,8 @@ Result<GridData> blocks_of(const Grid& grid, const std::string& file, GridData d
   return data;
 }
 
-Result<GridData> convert(const openvdb::GridBase& grid, const std::string& file, std::size_t limit) {
+Result<GridData> convert(const openvdb::GridBase& grid, const std::string& file,
+                         std::size_t limit) {
   GridData data;
   data.components = components_of(grid);
   data.kind = kind_of(grid.getGridClass());
@@ -148,15 +155,15 @@ Result<GridData> convert(const openvdb::GridBase& grid, const std::string& file,
     return blocks_of(*g, file, data, limit);
   if (const auto* g = as.template operator()<openvdb::Vec3DGrid>())
     return blocks_of(*g, file, data, limit);
-  return fail(ErrorKind::bad_request, file + ": grid `" + grid.getName() + "` holds values of type " +
-                                          grid.valueType() +
+  return fail(ErrorKind::bad_request, file + ": grid `" + grid.getName() +
+                                          "` holds values of type " + grid.valueType() +
                                           "; numbers and vectors of three can be read");
 }
 
 }  // namespace
 
 Result<FileInfo> read_info(const std::string& file) {
-  return guarded(file, [&](openvdb::io::File& in) -> Result<FileInfo> {
+  return guarded(file, "the list of its grids", [&](openvdb::io::File& in) -> Result<FileInfo> {
     FileInfo info;
     const auto about = in.getMetadata();
     for (auto meta = about->beginMeta(); meta != about->endMeta(); ++meta)
@@ -165,9 +172,12 @@ Result<FileInfo> read_info(const std::string& file) {
     for (const auto& grid : *grids) {
       GridInfo one{grid->getName(), grid->valueType(), components_of(*grid),
                    kind_of(grid->getGridClass())};
-      const auto low = grid->getMetadata<openvdb::Vec3IMetadata>(openvdb::GridBase::META_FILE_BBOX_MIN);
-      const auto high = grid->getMetadata<openvdb::Vec3IMetadata>(openvdb::GridBase::META_FILE_BBOX_MAX);
-      const auto count = grid->getMetadata<openvdb::Int64Metadata>(openvdb::GridBase::META_FILE_VOXEL_COUNT);
+      const auto low =
+          grid->getMetadata<openvdb::Vec3IMetadata>(openvdb::GridBase::META_FILE_BBOX_MIN);
+      const auto high =
+          grid->getMetadata<openvdb::Vec3IMetadata>(openvdb::GridBase::META_FILE_BBOX_MAX);
+      const auto count =
+          grid->getMetadata<openvdb::Int64Metadata>(openvdb::GridBase::META_FILE_VOXEL_COUNT);
       for (int a = 0; a < 3; ++a) {
         if (low) one.low[static_cast<std::size_t>(a)] = low->value()[a];
         if (high) one.high[static_cast<std::size_t>(a)] = high->value()[a];
@@ -180,7 +190,8 @@ Result<FileInfo> read_info(const std::string& file) {
 }
 
 Result<GridData> read_grid(const std::string& file, const std::string& name, std::size_t limit) {
-  return guarded(file, [&](openvdb::io::File& in) -> Result<GridData> {
+  const std::string part = "grid `" + shortened(name) + "`";
+  return guarded(file, part, [&](openvdb::io::File& in) -> Result<GridData> {
     if (!in.hasGrid(name))
       return fail(ErrorKind::bad_request, file + " has no grid `" + name + "`");
     const openvdb::GridBase::Ptr grid = in.readGrid(name);

@@ -24,6 +24,15 @@ std::set<std::string> changed_names(const Variables& before, const Variables& a,
   return names;
 }
 
+constexpr const char *in_one = " in one branch and ", *in_other = " in the other";
+
+// What a message calls it.
+std::string spoken(const std::string& name) {
+  if (name == "%result") return "the returned value";
+  if (name == "%value") return "the value of `? :`";
+  return "`" + name + "`";
+}
+
 bool is_internal(const std::string& name) { return name.front() == '%'; }
 
 // Whether each run of the block sets the name, whatever its branches and loops do.
@@ -93,7 +102,7 @@ void Lowering::branch(ir::Value condition, const std::function<void()>& if_true,
     if (!a.is_numeric() || !b.is_numeric()) {
       if (!same_shape(a, b))
         error("branch-types", span,
-              "`" + name + "` is " + describe(a) + " in one branch and " + describe(b) + " in the other",
+              spoken(name) + " is " + describe(a) + in_one + describe(b) + in_other,
               a.kind == Kind::text || a.kind == Kind::function
                   ? "texts and functions must be known when the program is compiled"
                   : "");
@@ -103,8 +112,7 @@ void Lowering::branch(ir::Value condition, const std::function<void()>& if_true,
     const auto shape = common_shape(a, b);
     if (!shape) {
       error("branch-types", span,
-            (name == "%result" ? std::string("the returned value") : "`" + name + "`") + " is " + describe(a) +
-                " in one branch and " + describe(b) + " in the other");
+            spoken(name) + " is " + describe(a) + in_one + describe(b) + in_other);
       variables()[name] = Typed{};
       continue;
     }

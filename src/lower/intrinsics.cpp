@@ -1,4 +1,6 @@
 // Builtins whose meaning depends on the shapes of their arguments, so that no program could say them.
+#include <fmt/format.h>
+
 #include <limits>
 
 #include "lower/lowering.h"
@@ -198,8 +200,11 @@ Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument
   };
   if (name == "texture_size") return needs(1) ? intrinsic_texture_size(arguments) : Typed{};
   const auto refuse = [&](const char* what) {
+    const Typed& given = arguments.front().value;
+    const auto constant = given.kind == Kind::number ? known(given.parts.front()) : std::nullopt;
     error("argument-type", arguments.front().span,
-          "`" + name + "` needs " + what + ", this is " + describe(arguments.front().value));
+          "`" + name + "` needs " + what + ", this is " +
+              (constant ? fmt::format("{}", *constant) : describe(given)));
     return Typed{};
   };
   if (name == "require") {

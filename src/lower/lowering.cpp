@@ -364,9 +364,14 @@ Lowered lower_program(SourceMap& sources, const lang::Program& program, const Lo
   Diagnostics found;
   Lowered lowered = lower::Lowering(sources, host, options, found).run(program);
 
-  // Of the errors that one call of the library makes, loops may have kept several.
+  // Of the errors that one call of the library makes, loops may have kept several. A name that is
+  // like no other is unknown wherever it is read, and one definition mends all places.
   std::vector<Span> calls;
+  std::set<std::string> unknown;
   for (const Diagnostic& diagnostic : found.all()) {
+    if (diagnostic.code == "unknown-name" && !diagnostic.suggestion.starts_with("did you mean") &&
+        !unknown.insert(diagnostic.message).second)
+      continue;
     if (diagnostic.severity == Severity::error && diagnostic.suggestion.contains("see library/")) {
       if (std::ranges::find(calls, diagnostic.span) != calls.end()) continue;
       calls.push_back(diagnostic.span);
@@ -384,9 +389,21 @@ void add_later_errors(SourceMap& sources, const lang::Program& program, const Lo
                       const LowerOptions& options, Diagnostics& diagnostics) {
   Diagnostics later;
   lower_program(sources, program, host, options, later);
+  // What is found on a line that was not understood, or about what is missing, is a consequence.
+  const std::vector<Diagnostic> earlier = diagnostics.all();
+  const auto line = [&](const Span& span) {
+    return sources.file(span.file).position(span.begin).line;
+  };
+  const auto follows = [&](const Diagnostic& found) {
+    return found.code == "output-kind" || found.code == "no-value" ||
+           std::ranges::any_of(earlier, [&](const Diagnostic& before) {
+             return before.severity == Severity::error && found.span.valid() &&
+                    found.span.file == before.span.file && line(found.span) == line(before.span);
+           });
+  };
   for (const Diagnostic& diagnostic : later.all()) {
+    if (follows(diagnostic)) continue;
     const bool unknown = diagnostic.code == "unknown-name" || diagnostic.code == "unknown-function";
-    if (diagnostic.code == "output-kind") continue;
     if (diagnostic.severity == Severity::error && (!unknown || diagnostic.suggestion.starts_with("did you mean")))
       diagnostics.add(diagnostic);
   }

@@ -61,7 +61,10 @@ void Lowering::lower_statement(const Stmt& statement) {
   if (const auto* s = std::get_if<ReturnStmt>(&statement.node)) return lower_return(*s, statement.span);
   if (const auto* s = std::get_if<ExprStmt>(&statement.node)) {
     const Typed value = lower(*s->value);
-    if (!value.is_error() && value.kind != Kind::nothing)
+    // A comparison has been questioned already, as the assignment that it may be meant for.
+    const auto* binary = std::get_if<BinaryExpr>(&s->value->node);
+    const bool questioned = binary && binary->op == BinaryOp::equal && !s->value->parenthesised;
+    if (!value.is_error() && value.kind != Kind::nothing && !questioned)
       warning("no-effect", statement.span, "the value of this expression is not used",
               "assign it to a name, or remove it");
     return;

@@ -107,6 +107,37 @@ TEST(Warnings, WhatVariesIsQuestionedInFrameBlocks) {
   EXPECT_FALSE(warned("if begin_frame\n  a = time * 2\nb = a * u"));
 }
 
+// One mistake makes one error, and each of them says where.
+TEST(Refused, OneMistakeIsOneError) {
+  const std::vector<std::pair<std::string, std::string>> table = {
+      {"a = filterwidth(", "1:unclosed-bracket"},
+      {"a = sin(", "1:unclosed-bracket"},
+      {"a = Dx(", "1:unclosed-bracket"},
+      {"a = texture(\"foo", "1:open-string"},
+      {"import sums of", "1:unexpected-word"},
+      {"function f(a)\nb = f(1)", "1:missing-block"},
+      {"a = foo + foo\nb = 2 * foo", "1:unknown-name"},
+      {"a = array(-1)", "`array` needs a constant from 1 to 1048576, this is -1"},
+      {"a = 2 > 1 ? \"x\" : 3", "the value of `? :` is a text in one branch and a number in the"},
+      {"a = [[1 2][3 4]]", "put a blank before a `[` that begins a new row"},
+      {"a = 2 frame", "write `*` to multiply"},
+      {"while = 3", "choose another name: `while` is a word of the language"}};
+  for (const auto& [text, expected] : table) {
+    const Outcome outcome = run_program(text, {.frame = {{"frame", {1}}}});
+    EXPECT_EQ(outcome.diagnostics.error_count(), 1u) << text << "\n" << outcome.messages();
+    EXPECT_NE(outcome.messages().find(expected), std::string::npos) << text << "\n"
+                                                                    << outcome.messages();
+  }
+  // Other lines' mistakes are told all the same, and so is each place of a name that is like
+  // another.
+  EXPECT_EQ(run_program("a = sin(\nb = cos()\nc = [1 2] + [1 2 3]").diagnostics.error_count(), 3u);
+  EXPECT_EQ(run_program("radius = 1\na = radus\nb = radus").diagnostics.error_count(), 2u);
+}
+
+TEST(Warnings, ALoneComparisonIsQuestionedOnce) {
+  EXPECT_EQ(run_program("a = 1\na == 3").diagnostics.all().size(), 1u);
+}
+
 TEST(Warnings, HidingAConstantIsQuestioned) {
   EXPECT_NE(run_program("PI = 3\na = PI").messages().find("hides-constant"), std::string::npos);
   EXPECT_EQ(run_program("Radius = 3\na = Radius").messages(), "");

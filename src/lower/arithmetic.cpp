@@ -1,5 +1,6 @@
 // Operators on numbers, vectors and matrices, and the conversions between them.
 #include <cmath>
+#include <limits>
 
 #include "lower/lowering.h"
 
@@ -111,10 +112,20 @@ std::optional<Typed> Lowering::common_shape(const Typed& a, const Typed& b) cons
 // ---- Operators --------------------------------------------------------------------------------------------------
 
 ir::Value Lowering::power(ir::Value a, ir::Value b) {
-  // Small whole powers are products.
+  // Small whole powers are products; roots and the reciprocal are at most 0.75 ulp off.
   if (const auto exponent = known(b)) {
     if (*exponent == 1) return a;
     if (*exponent == 2) return emit(ir::Op::fmul, {a, a});
+    if (*exponent == -1) return emit(ir::Op::fdiv, {constant(1), a});
+    if (*exponent == 0.5f || *exponent == 0.25f) {
+      // As for pow, -0 counts as 0, and -infinity as infinity.
+      constexpr float infinity = std::numeric_limits<float>::infinity();
+      const ir::Value lowest = emit(ir::Op::feq, {a, constant(-infinity)});
+      const ir::Value base =
+          emit(ir::Op::select, {lowest, constant(infinity), emit(ir::Op::fadd, {a, constant(0)})});
+      const ir::Value root = emit(ir::Op::fsqrt, {base});
+      return *exponent == 0.5f ? root : emit(ir::Op::fsqrt, {root});
+    }
     if (*exponent == 3) return emit(ir::Op::fmul, {emit(ir::Op::fmul, {a, a}), a});
     if (*exponent == 4) {
       const ir::Value square = emit(ir::Op::fmul, {a, a});

@@ -38,6 +38,24 @@ TEST(Values, ArithmeticAndPrecedence) {
   EXPECT_EQ(value("a = 10 - 4 - 3"), Values{3});
 }
 
+// Powers known when compiling that are roots or the reciprocal: with the special cases of pow.
+TEST(Values, RootsAsPowers) {
+  const float inf = INFINITY;
+  for (const float x : {0.0f, -0.0f, 4.0f, 2.0f, 1e-40f, 3e38f, -1.0f, inf, -inf, std::nanf("")})
+    for (const float power : {0.5f, 0.25f, -1.0f}) {
+      const Sample sample{.stream = {{"k", {x}}}, .frame = {}, .knobs = {}};
+      const Outcome outcome = run_program("a = k ^ " + std::to_string(power), sample);
+      const float found = outcome.number("a"), expected = std::pow(x, power);
+      if (std::isnan(expected))
+        EXPECT_TRUE(std::isnan(found)) << x << " ^ " << power;
+      else
+        EXPECT_FLOAT_EQ(found, expected) << x << " ^ " << power;
+      EXPECT_EQ(std::signbit(found) && !std::isnan(found),
+                std::signbit(expected) && !std::isnan(expected))
+          << x << " ^ " << power;
+    }
+}
+
 TEST(Values, VectorsTakeNumbersComponentByComponent) {
   EXPECT_EQ(value("a = [1 2 3] * 2"), (Values{2, 4, 6}));
   EXPECT_EQ(value("a = 1 - [1, 2, 3]"), (Values{0, -1, -2}));

@@ -107,6 +107,8 @@ double derivative_energy(const Kind<N>& kind, std::size_t axis) {
 // Over many seeds, so that the few gradients of one lattice do not count.
 template <std::size_t N>
 void mean_squares_are_closed_forms() {
+  // On a line the seeds only shuffle the same 256 gradients.
+  const double tolerance = N == 1 ? 0.04 : 0.02;
   for (const Kind<N>& kind : kinds<N>()) {
     SCOPED_TRACE(kind.name + " " + std::to_string(N) + "-D");
     std::mt19937 random(N);
@@ -130,10 +132,10 @@ void mean_squares_are_closed_forms() {
         along += value * double{kind.at(far, options)};
       }
     }
-    EXPECT_NEAR(square / (seeds * points) / variance(kind), 1, 0.02);
-    EXPECT_NEAR(along / square, 0, 0.02);
+    EXPECT_NEAR(square / (seeds * points) / variance(kind), 1, tolerance);
+    EXPECT_NEAR(along / square, 0, tolerance);
     for (std::size_t k = 0; k < N; ++k)
-      EXPECT_NEAR(energy[k] / (seeds * points) / derivative_energy(kind, k), 1, 0.02) << k;
+      EXPECT_NEAR(energy[k] / (seeds * points) / derivative_energy(kind, k), 1, tolerance) << k;
   }
 }
 TEST(NoiseSpectrum, MeanSquaresAreTheClosedFormsInAllDimensions) {

@@ -1,6 +1,6 @@
 // A part of this program in a process of its own, for libraries that trust what files say of
-// themselves: the means to talk to it and the limits it lives under. Both ends are the same program,
-// so values go as they lie in memory.
+// themselves: the means to talk to it and the limits it lives under. Both ends are the same
+// program, so values go as they lie in memory.
 #pragma once
 
 #include <fcntl.h>
@@ -54,8 +54,8 @@ bool get_all(int from, Values& values) {
   return get(from, values.data(), count * sizeof(typename Values::value_type));
 }
 
-// Called first in the new process. Of addresses: what is mapped already counts. It says nothing, and
-// a signal to the whole group is for the process that it serves, with which it ends.
+// Called first in the new process. Of addresses: what is mapped already counts. It says nothing,
+// and a signal to the whole group is for the process that it serves, with which it ends.
 inline void settle(rlim_t most_memory, rlim_t most_seconds) {
   const auto limit = [](__rlimit_resource which, rlim_t most) {
     const rlimit value{most, most};

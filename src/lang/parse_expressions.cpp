@@ -349,8 +349,7 @@ bool Parser::at_metadata() const {
   return entry || peek(2).kind == right_bracket;
 }
 
-// ---- Errors
-// -----------------------------------------------------------------------------------------------------
+// ---- Errors -------------------------------------------------------------------------------------
 
 void Parser::report_missing_operand() {
   const TokenKind before = position_ > 0 ? words_.tokens[position_ - 1].kind : end;

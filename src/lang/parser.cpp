@@ -16,8 +16,7 @@ Parser::Parser(const SourceMap& sources, FileId file, TokenList words, Diagnosti
       diagnostics_(diagnostics),
       limits_(limits) {}
 
-// ---- Words
-// ------------------------------------------------------------------------------------------------------
+// ---- Words --------------------------------------------------------------------------------------
 
 const Token& Parser::peek(std::size_t ahead) const {
   return words_.tokens[std::min(position_ + ahead, words_.tokens.size() - 1)];
@@ -56,8 +55,7 @@ std::string Parser::quote(const Span& place) const {
   return std::string(whole);
 }
 
-// ---- Errors and limits
-// ------------------------------------------------------------------------------------------
+// ---- Errors and limits --------------------------------------------------------------------------
 
 void Parser::report(std::string code, Span place, std::string message, std::string expected,
                     std::string suggestion) {
@@ -116,8 +114,7 @@ Parser::Level::Level(Parser& parser) : parser_(parser) {
                "compute it in steps, or move the inner part into a function");
 }
 
-// ---- Entry
-// ------------------------------------------------------------------------------------------------------
+// ---- Entry --------------------------------------------------------------------------------------
 
 Program Parser::program() {
   Program program;

@@ -205,8 +205,10 @@ int run(int runs, const std::vector<std::string>& words) {
     std::fflush(stdout);
     worst = std::max(worst, at(total, 0.5));
   }
-  std::printf("slowest to its first native code %.1f ms (goal: 50); %d programs need inputs that are not at hand\n",
-              worst, skipped);
+  std::printf(
+      "slowest to its first native code %.1f ms (goal: 50); %d programs need inputs that are not "
+      "at hand\n",
+      worst, skipped);
   return wrong != 0;
 }
 

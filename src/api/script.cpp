@@ -24,7 +24,8 @@ namespace {
 // Samples run at a time: their arrays fit the nearer caches.
 constexpr std::int64_t batch = 4096;
 
-std::optional<FileId> find_module(SourceMap& sources, const std::vector<std::string>& path, const std::string& name) {
+std::optional<FileId> find_module(SourceMap& sources, const std::vector<std::string>& path,
+                                  const std::string& name) {
   for (const std::string& folder : path) {
     const std::filesystem::path file = std::filesystem::path(folder) / (name + ".pse");
     if (std::ifstream stream(file, std::ios::binary); stream) {
@@ -42,7 +43,8 @@ std::string input_name(const std::string& name, std::size_t components, std::siz
 
 }  // namespace
 
-std::expected<Script, std::string> Script::compile(std::string_view text, const ScriptOptions& options) {
+std::expected<Script, std::string> Script::compile(std::string_view text,
+                                                   const ScriptOptions& options) {
   auto state = std::make_shared<State>();
   CompileOptions compile_options;
   compile_options.interpret = options.interpret;
@@ -84,15 +86,17 @@ std::expected<void, std::string> Script::set(std::string_view knob, std::span<co
   for (std::size_t i = 0; i < state_->knobs.size(); ++i) {
     if (state_->knobs[i].name != knob) continue;
     if (value.size() != values_[i].size())
-      return std::unexpected("knob `" + std::string(knob) + "` has " + std::to_string(values_[i].size()) +
-                             " components, this gives " + std::to_string(value.size()));
+      return std::unexpected("knob `" + std::string(knob) + "` has " +
+                             std::to_string(values_[i].size()) + " components, this gives " +
+                             std::to_string(value.size()));
     values_[i].assign(value.begin(), value.end());
     return {};
   }
   return std::unexpected("the program has no knob `" + std::string(knob) + "`");
 }
 
-std::expected<void, std::string> Script::run(std::int64_t count, const std::vector<ConstArrays>& inputs,
+std::expected<void, std::string> Script::run(std::int64_t count,
+                                             const std::vector<ConstArrays>& inputs,
                                              const std::vector<Arrays>& outputs) const {
   const Program& program = *state_->program;
   const ir::Module& module = program.module();
@@ -111,7 +115,8 @@ std::expected<void, std::string> Script::run(std::int64_t count, const std::vect
       return std::unexpected("input `" + declared.name + "` was declared with " +
                              std::to_string(declared.components) + " components");
     for (std::size_t c = 0; c < given->components.size(); ++c)
-      (declared.per_run ? uniforms : arrays)[input_name(declared.name, given->components.size(), c)] =
+      (declared.per_run ? uniforms
+                        : arrays)[input_name(declared.name, given->components.size(), c)] =
           given->components[c];
   }
   for (std::size_t k = 0; k < values_.size(); ++k)
@@ -121,12 +126,14 @@ std::expected<void, std::string> Script::run(std::int64_t count, const std::vect
   // Where each output goes.
   std::map<std::string, float*> wanted;
   for (const Arrays& output : outputs) {
-    const auto known = std::find_if(state_->outputs.begin(), state_->outputs.end(),
-                                    [&](const ScriptName& name) { return name.name == output.name; });
+    const auto known =
+        std::find_if(state_->outputs.begin(), state_->outputs.end(),
+                     [&](const ScriptName& name) { return name.name == output.name; });
     if (known == state_->outputs.end())
       return std::unexpected("the program does not set `" + output.name + "`");
     if (output.components.size() != static_cast<std::size_t>(known->components))
-      return std::unexpected("output `" + output.name + "` has " + std::to_string(known->components) + " components");
+      return std::unexpected("output `" + output.name + "` has " +
+                             std::to_string(known->components) + " components");
     for (std::size_t c = 0; c < output.components.size(); ++c)
       wanted[input_name(output.name, output.components.size(), c)] = output.components[c];
   }
@@ -153,7 +160,8 @@ std::expected<void, std::string> Script::run(std::int64_t count, const std::vect
     const std::int64_t here = std::min(batch, count - first);
     for (std::size_t i = 0; i < in.size(); ++i)
       if (in_pointers[i]) std::copy_n(arrays.at(module.inputs[i].name) + first, here, in[i].data());
-    program.kernel->run_samples(frame, status, scratch, in_pointers.data(), out_pointers.data(), here);
+    program.kernel->run_samples(frame, status, scratch, in_pointers.data(), out_pointers.data(),
+                                here);
     for (std::size_t o = 0; o < out.size(); ++o)
       if (const auto target = wanted.find(module.outputs[o].name); target != wanted.end())
         std::copy_n(out[o].data(), here, target->second + first);

@@ -90,7 +90,8 @@ ExternalFunction Textures::bind_texture(const ir::External& external) {
   texture_calls_.push_back(std::make_unique<image::TextureCall>(image::TextureCall{
       *texture, image::filter_from_name(name.filter).value_or(image::Filter::linear),
       image::wrap_from_name(name.wrap).value_or(image::Wrap::repeat), external.arguments > 2}));
-  (*texture)->prepare(texture_calls_.back()->filter);
+  if (const auto ready = (*texture)->prepare(texture_calls_.back()->filter); !ready)
+    throw Failure(Exit::input, ready.error().message);
   identities_.emplace_back(name.file, file_identity(resolve_(name.file)));
   return {&image::TextureCall::run, texture_calls_.back().get()};
 }

@@ -1,4 +1,5 @@
-// Errors and warnings as collected data. Every stage adds to a Diagnostics; only the program's edge prints it.
+// Errors and warnings as collected data. Every stage adds to a Diagnostics; only the program's edge
+// prints it.
 #pragma once
 
 #include <string>
@@ -48,11 +49,13 @@ class Diagnostics {
 // Source line, caret and suggestion for each diagnostic, ready for a terminal.
 std::string print_text(const Diagnostics& diagnostics, const SourceMap& sources, bool colour);
 
-// A JSON array with one object per diagnostic: severity, code, message, file, line, column, end_line, end_column,
-// expected, suggestion. Lines and columns count from 1; columns, here and in print_text, count characters, not bytes.
+// A JSON array with one object per diagnostic: severity, code, message, file, line, column,
+// end_line, end_column, expected, suggestion. Lines and columns count from 1; columns, here and in
+// print_text, count characters, not bytes.
 std::string print_json(const Diagnostics& diagnostics, const SourceMap& sources);
 
-// The candidate nearest to `name` by edit distance, if one is near enough to be worth naming; else empty.
+// The candidate nearest to `name` by edit distance, if one is near enough to be worth naming; else
+// empty.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
 
 }  // namespace pse

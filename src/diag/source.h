@@ -1,4 +1,5 @@
-// Source texts and places in them. First stop of the flow: every later stage refers to text by Span.
+// Source texts and places in them. First stop of the flow: every later stage refers to text by
+// Span.
 #pragma once
 
 #include <cstdint>

@@ -8,13 +8,15 @@
 namespace pse::image {
 namespace {
 
-// srgb_encode on [0, 1] by straight lines between 256 points in each octave from 2^-9 on; below, the curve itself is a
-// line. The error stays below 1e-6, a fifteenth of a step of 16 bits, and it takes a tenth of the time.
+// srgb_encode on [0, 1] by straight lines between 256 points in each octave from 2^-9 on; below,
+// the curve itself is a line. The error stays below 1e-6, a fifteenth of a step of 16 bits, and it
+// takes a tenth of the time.
 class UnitCurve {
  public:
   UnitCurve() {
     for (std::size_t i = 0; i < points_.size(); ++i)
-      points_[i] = srgb_encode(std::bit_cast<float>(first_bits + (static_cast<std::uint32_t>(i) << step_bits)));
+      points_[i] = srgb_encode(
+          std::bit_cast<float>(first_bits + (static_cast<std::uint32_t>(i) << step_bits)));
   }
 
   // For x in [0, 1]; 0 for NaN.
@@ -24,7 +26,8 @@ class UnitCurve {
     if (bits < first_bits) return 12.92f * x;
     const std::uint32_t offset = bits - first_bits;
     const std::size_t at = std::min<std::size_t>(offset >> step_bits, points_.size() - 2);
-    const float between = static_cast<float>(offset - (static_cast<std::uint32_t>(at) << step_bits)) * 0x1p-15f;
+    const float between =
+        static_cast<float>(offset - (static_cast<std::uint32_t>(at) << step_bits)) * 0x1p-15f;
     return points_[at] + between * (points_[at + 1] - points_[at]);
   }
 

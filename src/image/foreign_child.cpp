@@ -1,5 +1,5 @@
-// The two ends of the conversation. The child says what the image is, then answers requests for rows
-// until the parent hangs up.
+// The two ends of the conversation. The child says what the image is, then answers requests for
+// rows until the parent hangs up.
 #include "image/foreign_child.h"
 
 #include <sys/socket.h>
@@ -38,7 +38,8 @@ bool put_spec(int to, const ImageSpec& spec) {
   bool good = side::put(to, &plain, sizeof plain) && side::put_all(to, spec.format) &&
               side::put_all(to, spec.storage);
   for (const Channel& channel : spec.channels)
-    good = good && side::put_all(to, channel.name) && side::put(to, &channel.type, sizeof channel.type);
+    good = good && side::put_all(to, channel.name) &&
+           side::put(to, &channel.type, sizeof channel.type);
   for (const auto& [name, text] : spec.attributes)
     good = good && side::put_all(to, name) && side::put_all(to, text);
   return good;

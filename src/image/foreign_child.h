@@ -1,5 +1,5 @@
-// A ForeignReader in a process of its own: OpenImageIO's readers of the rarer formats end the process
-// they are in when a damaged file contradicts what they take for granted.
+// A ForeignReader in a process of its own: OpenImageIO's readers of the rarer formats end the
+// process they are in when a damaged file contradicts what they take for granted.
 #pragma once
 
 #include <functional>

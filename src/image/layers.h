@@ -4,7 +4,8 @@
 // Of `layer.R .G .B (.A)`, `layer.X .Y .Z (.W)`, `layer.U .V (.W)`, `layer.S .T` and `layer.c1 .c2
 // ...` (letters in either case) the vector `layer` is made; a layer of one channel is the number
 // `layer`; other channels are numbers `layer_channel`. Root channels that are left keep their
-// names: `Z`. Tables' columns without a dot keep theirs too. Signs that a name cannot have become `_`: `forward.left.u .v` is `forward_left`.
+// names: `Z`. Tables' columns without a dot keep theirs too. Signs that a name cannot have become
+// `_`: `forward.left.u .v` is `forward_left`.
 //
 // Writing: `color` is R G B, `alpha` is A, `Z` is Z. Other values are layers named after their
 // variable: numbers `.Y`; colours `.R .G .B`; 2 components `.U .V` when the last word of the name

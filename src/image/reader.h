@@ -1,6 +1,6 @@
 // Reading images, a whole one or rows at a time, so that a huge image need never be wholly in
-// memory. open_reader() tells the format by the file's first bytes: EXR and PNG here, tables (table.h), everything
-// else through OpenImageIO.
+// memory. open_reader() tells the format by the file's first bytes: EXR and PNG here, tables
+// (table.h), everything else through OpenImageIO.
 #pragma once
 
 #include <memory>
@@ -27,8 +27,8 @@ struct ReadOptions {
   // Turn colour channels into linear light with premultiplied alpha and these primaries. Nothing:
   // as stored.
   std::optional<ColourSpace> working = ColourSpace::lin_rec709;
-  std::string
-      view;  // of a stereo file the view whose channels have no prefix; empty: the file's first
+  // Of a stereo file the view whose channels have no prefix; empty: the file's first.
+  std::string view;
 };
 
 // An open image. Not to be used from two threads at once.

@@ -1,7 +1,8 @@
 // An image looked up at any coordinates: `texture("wood.exr", u, v)` of the language. (0, 0) is the
 // lower left corner of the frame, (1, 1) the upper right one; pixels of the frame without data are
 // 0. The result of a lookup depends on nothing but its arguments, so it has the same bits in
-// batches of any size.
+// batches of any size. A large image is kept in tiles on the disk (texels.h) and looked up there
+// with the same bits.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +18,7 @@
 
 #include "image/layers.h"
 #include "image/reader.h"
+#include "image/texels.h"
 
 namespace pse::image {
 
@@ -37,37 +39,51 @@ std::optional<Filter> filter_from_name(std::string_view name);
 
 class Texture {
  public:
-  // Of the channels of a layer; the same channel may come twice.
+  // Of the channels of a layer; the same channel may come twice. In memory.
   Texture(const Image& image, std::span<const int> channels);
+  // Of texels that are whole. Smaller sizes of texels on disk go there too, read by way of `cache`,
+  // as long as they take more than `small` bytes.
+  explicit Texture(Texels texels, std::shared_ptr<TileCache> cache = {}, std::int64_t small = 0)
+      : full_(std::move(texels)), cache_(std::move(cache)), small_(small) {}
 
-  int width() const { return levels_.front().width; }
-  int height() const { return levels_.front().height; }
-  int components() const { return components_; }
+  int width() const { return full_.width(); }
+  int height() const { return full_.height(); }
+  int components() const { return full_.components(); }
+  bool in_memory() const { return full_.in_memory(); }
 
   // `size` is the width that the value shall cover, in units of u and v; only Filter::mipmap looks
   // at it. Between powers of two the level is chosen linearly in `size`. Where u or v is NaN or
-  // infinite the result is 0.
-  void look_up(float u, float v, float size, Filter filter, Wrap wrap, float* result) const;
-  // Makes now what the filter would make at its first lookup: of a large image that takes a second.
-  void prepare(Filter filter) const {
-    if (filter == Filter::mipmap) pyramid();
+  // infinite the result is 0. `held` belongs to one thread, and to this texture.
+  void look_up(float u, float v, float size, Filter filter, Wrap wrap, float* result,
+               HeldTiles& held) const;
+  void look_up(float u, float v, float size, Filter filter, Wrap wrap, float* result) const {
+    HeldTiles held;
+    look_up(u, v, size, filter, wrap, result, held);
   }
+  // Makes now what the filter would make at its first lookup: of a large image that takes a second.
+  // Where that found no room the filter uses the full size only.
+  Result<void> prepare(Filter filter) const;
 
  private:
-  struct Level {
-    int width = 0, height = 0;
-    std::vector<float> texels;  // components interleaved
-  };
-  void look_up_linear(const Level& level, float u, float v, Wrap wrap, float* result) const;
-  void look_up_cubic(float u, float v, Wrap wrap, float* result) const;
-  void look_up_mipmap(float u, float v, float size, Wrap wrap, float* result) const;
-  Level halved(const Level& from) const;
-  const std::vector<Level>& pyramid() const;
+  void look_up_mipmap(float u, float v, float size, Wrap wrap, float* result,
+                      HeldTiles& held) const;
+  Result<Texels> halved(const Texels& from) const;
+  const std::vector<Texels>& pyramid() const;
 
-  int components_ = 0;
-  std::vector<Level> levels_;  // the full size
+  Texels full_;
+  std::shared_ptr<TileCache> cache_;
+  std::int64_t small_ = 0;
   mutable std::once_flag built_;
-  mutable std::vector<Level> smaller_;  // made when first needed
+  mutable std::vector<Texels> smaller_;  // made when first needed
+  mutable Result<void> made_;            // what became of them
+};
+
+// What the textures of one cache may take of the memory, in bytes: those that do not fit go to the
+// disk.
+struct TextureMemory {
+  std::int64_t whole = std::int64_t{320} << 20;  // of textures in memory, smaller sizes included
+  std::int64_t tiles = std::int64_t{96} << 20;   // of the others' tiles
+  std::int64_t small = std::int64_t{4} << 20;    // a texture of less always stays in memory
 };
 
 // Textures by file and layer, each loaded once. Safe to use from several threads.
@@ -76,7 +92,8 @@ class TextureCache {
   // `resolve` turns a program's file name into a path (the asset folders of PSE_PATH); empty: as it
   // is.
   explicit TextureCache(ReadOptions options = {},
-                        std::function<std::string(const std::string&)> resolve = {});
+                        std::function<std::string(const std::string&)> resolve = {},
+                        const TextureMemory& memory = {});
 
   // The layer `data` is the file's first channels, up to four, exactly as stored: for normal maps
   // kept in PNG.
@@ -96,12 +113,14 @@ class TextureCache {
     Result<std::shared_ptr<const Texture>> texture = std::shared_ptr<const Texture>();
   };
   Result<Opened> open(const std::string& file, const std::string& layer) const;
-  Result<std::shared_ptr<const Texture>> read(const std::string& file,
-                                              const std::string& layer) const;
+  Result<std::shared_ptr<const Texture>> read(const std::string& file, const std::string& layer);
 
   ReadOptions options_;
   std::function<std::string(const std::string&)> resolve_;
-  std::mutex mutex_;
+  TextureMemory memory_;
+  std::shared_ptr<TileCache> tiles_;
+  std::mutex mutex_;         // of what follows
+  std::int64_t whole_left_;  // bytes for textures in memory
   std::map<std::pair<std::string, std::string>, std::shared_ptr<Entry>> entries_;
 };
 

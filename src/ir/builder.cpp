@@ -36,19 +36,21 @@ Value Builder::const_bool(bool value) {
   return append({.op = Op::const_bool, .imm = value ? 1 : 0}, {&type, 1});
 }
 
-Value Builder::emit(Op op, std::initializer_list<Value> operands, std::int32_t imm, std::int32_t component) {
+Value Builder::emit(Op op, std::initializer_list<Value> operands, std::int32_t imm,
+                    std::int32_t component) {
   // `T` in the operator table stands for the type of the last operand.
   const char letter = info(op).results.front();
   const Type result = letter == 'T' ? type(*(operands.end() - 1)) : type_of_letter(letter);
   return append({.op = op, .operands = operands, .imm = imm, .component = component}, {&result, 1});
 }
 
-void Builder::emit_void(Op op, std::initializer_list<Value> operands, std::int32_t imm, std::int32_t component) {
+void Builder::emit_void(Op op, std::initializer_list<Value> operands, std::int32_t imm,
+                        std::int32_t component) {
   append({.op = op, .operands = operands, .imm = imm, .component = component}, {});
 }
 
-std::vector<Value> Builder::emit_multi(Op op, std::span<const Value> operands, std::span<const Type> result_types,
-                                       std::int32_t imm) {
+std::vector<Value> Builder::emit_multi(Op op, std::span<const Value> operands,
+                                       std::span<const Type> result_types, std::int32_t imm) {
   append({.op = op, .operands = {operands.begin(), operands.end()}, .imm = imm}, result_types);
   return regions_.back()->body.back().results;
 }

@@ -29,17 +29,22 @@ class Builder {
   Value const_i32(std::int32_t value);
   Value const_bool(bool value);
 
-  // One instruction without regions; result types follow the operator table. `imm` and `component` as in Instruction.
-  Value emit(Op op, std::initializer_list<Value> operands, std::int32_t imm = 0, std::int32_t component = 0);
-  void emit_void(Op op, std::initializer_list<Value> operands, std::int32_t imm = 0, std::int32_t component = 0);
+  // One instruction without regions; result types follow the operator table. `imm` and `component`
+  // as in Instruction.
+  Value emit(Op op, std::initializer_list<Value> operands, std::int32_t imm = 0,
+             std::int32_t component = 0);
+  void emit_void(Op op, std::initializer_list<Value> operands, std::int32_t imm = 0,
+                 std::int32_t component = 0);
   // call and external: the results have the given types.
-  std::vector<Value> emit_multi(Op op, std::span<const Value> operands, std::span<const Type> result_types,
-                                std::int32_t imm);
+  std::vector<Value> emit_multi(Op op, std::span<const Value> operands,
+                                std::span<const Type> result_types, std::int32_t imm);
 
   // The same instruction, without regions, for other operands. Gives its results.
-  std::vector<Value> emit_like(const Instruction& original, std::span<const Value> operands, std::span<const Type> result_types);
+  std::vector<Value> emit_like(const Instruction& original, std::span<const Value> operands,
+                               std::span<const Type> result_types);
 
-  // Structured control. Regions are filled between begin_region and end_region, then handed to emit_if / emit_loop.
+  // Structured control. Regions are filled between begin_region and end_region, then handed to
+  // emit_if / emit_loop.
   void begin_region(Region& region) { regions_.push_back(&region); }
   void end_region() { regions_.pop_back(); }
   Value add_param(Region& region, Type type);

@@ -11,11 +11,12 @@
 
 namespace pse::ir {
 
-// How often a value is computed: once per program, per frame, per sample. Rates are assigned by passes/rates.
+// How often a value is computed: once per program, per frame, per sample. Rates are assigned by
+// passes/rates.
 enum class Rate : std::uint8_t { constant, frame, sample };
 
-// A value is an index into Function::values. Every value is defined exactly once, before its uses, and is visible in
-// its own region after its definition and in regions nested there.
+// A value is an index into Function::values. Every value is defined exactly once, before its uses,
+// and is visible in its own region after its definition and in regions nested there.
 using Value = std::uint32_t;
 inline constexpr Value no_value = 0xffffffffu;
 
@@ -40,7 +41,8 @@ struct Instruction {
   // const_f32 (as float bits), const_i32, const_bool: the value. Others: an index, see ops.h.
   std::int32_t imm = 0;
   std::int32_t component = 0;   // array_load, array_store
-  std::vector<Region> regions;  // if_: then, else. loop: head (params; yields the condition), body (params; yields the next)
+  // if_: then, else. loop: head (params; yields the condition), body (params; yields the next).
+  std::vector<Region> regions;
   Span span;                    // what the user wrote, for reports; may be invalid
 
   float imm_f32() const { return __builtin_bit_cast(float, imm); }

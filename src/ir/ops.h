@@ -1,5 +1,6 @@
-// The operator table of the IR: every operator, what it takes and gives, and its meaning in one sentence.
-// The interpreter (ir/interpreter), the constant folder and the LLVM emitter must all agree with this table.
+// The operator table of the IR: every operator, what it takes and gives, and its meaning in one
+// sentence. The interpreter (ir/interpreter), the constant folder and the LLVM emitter must all
+// agree with this table.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +39,8 @@ enum class Op : std::uint8_t {
 struct OpInfo {
   Op op;
   std::string_view name;      // as in the text form
-  std::string_view operands;  // one letter each: f i b; T: any one type, the same for every T; *: see meaning
+  // One letter each: f i b; T: any one type, the same for every T; *: see meaning.
+  std::string_view operands;
   std::string_view results;   // likewise
   bool pure;                  // no effect besides its results; may be moved, repeated or dropped
   std::string_view meaning;

@@ -1,5 +1,5 @@
-// The tree of a program: what the parser makes and the lowering, the formatter and `--emit ast` read.
-// Second stage of the flow: text -> tokens -> tree. Types are not known here; see lower/.
+// The tree of a program: what the parser makes and the lowering, the formatter and `--emit ast`
+// read. Second stage of the flow: text -> tokens -> tree. Types are not known here; see lower/.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,8 @@ struct Stmt;
 using ExprPtr = std::unique_ptr<Expr>;
 using StmtPtr = std::unique_ptr<Stmt>;
 
-// A run of statements and how it was written: in `{ }`, indented below its head, or (`same_line`) after it.
+// A run of statements and how it was written: in `{ }`, indented below its head, or (`same_line`)
+// after it.
 struct Block {
   std::vector<StmtPtr> statements;
   bool braces = false;
@@ -32,12 +33,12 @@ struct Block {
   const StmtPtr& operator[](std::size_t i) const { return statements[i]; }
 };
 
-// ---- Expressions ----------------------------------------------------------------------------------------------
+// ---- Expressions --------------------------------------------------------------------------------
 
 enum class UnaryOp : std::uint8_t { negate, logical_not };
 
-// `power` is `^` or `**`; `logical_and`/`logical_or` are `and`/`or` or `&&`/`||`. The right side of the logical
-// operators is evaluated only where the left side does not decide.
+// `power` is `^` or `**`; `logical_and`/`logical_or` are `and`/`or` or `&&`/`||`. The right side of
+// the logical operators is evaluated only where the left side does not decide.
 enum class BinaryOp : std::uint8_t {
   add, subtract, multiply, divide, modulo, power,
   less, less_equal, greater, greater_equal, equal, not_equal,
@@ -66,7 +67,8 @@ struct VectorExpr {
   std::vector<ExprPtr> elements;
 };
 
-// `[first .. last]`, both ends included; only what `for` runs over. `step` is null for 1: `[first .. last by step]`.
+// `[first .. last]`, or `[first .. last by step]`, both ends included; only what `for` runs over.
+// `step` is null for 1.
 struct RangeExpr {
   ExprPtr first, last, step;
 };
@@ -109,8 +111,8 @@ struct IndexExpr {
   std::vector<ExprPtr> indices;
 };
 
-// `base.name`: a swizzle (`p.x`, `c.rgb`), a channel of a named image (`fg.color`), a function of a module, an
-// action's clock (`blink.Time`).
+// `base.name`: a swizzle (`p.x`, `c.rgb`), a channel of a named image (`fg.color`), a function of a
+// module, an action's clock (`blink.Time`).
 struct MemberExpr {
   ExprPtr base;
   std::string name;
@@ -119,14 +121,14 @@ struct MemberExpr {
 
 struct Expr {
   Span span;
-  std::variant<NumberExpr, StringExpr, BoolExpr, NameExpr, VectorExpr, RangeExpr, TupleExpr, UnaryExpr, BinaryExpr,
-               ConditionalExpr, CallExpr, IndexExpr, MemberExpr>
+  std::variant<NumberExpr, StringExpr, BoolExpr, NameExpr, VectorExpr, RangeExpr, TupleExpr,
+               UnaryExpr, BinaryExpr, ConditionalExpr, CallExpr, IndexExpr, MemberExpr>
       node;
-  bool parenthesised = false;  // written in redundant or grouping parentheses; kept by the formatter
-  std::uint16_t height = 1;    // levels of this tree, leaves being 1; at most ParseLimits::max_height
+  bool parenthesised = false;  // written in parentheses; the formatter keeps them
+  std::uint16_t height = 1;    // levels of this tree, leaves being 1; at most max_height
 };
 
-// ---- Statements -----------------------------------------------------------------------------------------------
+// ---- Statements ---------------------------------------------------------------------------------
 
 enum class AssignOp : std::uint8_t { set, add, subtract, multiply, divide, power };
 
@@ -205,7 +207,8 @@ struct ActionStmt {
   Block body;
 };
 
-// Inside an action: `(MOVE, value)` sets, `add (MOVE, value)` adds, `name amount` mixes an action in.
+// Inside an action: `(MOVE, value)` sets, `add (MOVE, value)` adds, `name amount` mixes an action
+// in.
 enum class MovementKind : std::uint8_t { set, add, mix };
 struct MovementStmt {
   MovementKind kind = MovementKind::set;
@@ -216,8 +219,8 @@ struct MovementStmt {
 
 struct Stmt {
   Span span;
-  std::variant<AssignStmt, ExprStmt, IfStmt, WhileStmt, ForStmt, ReturnStmt, BreakStmt, ContinueStmt, FunctionStmt,
-               ImportStmt, ActionStmt, MovementStmt>
+  std::variant<AssignStmt, ExprStmt, IfStmt, WhileStmt, ForStmt, ReturnStmt, BreakStmt,
+               ContinueStmt, FunctionStmt, ImportStmt, ActionStmt, MovementStmt>
       node;
 };
 

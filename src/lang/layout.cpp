@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace pse::lang {
 
@@ -58,7 +59,8 @@ class Balancer {
     // Repairs may find another partner for a bracket; an error must be left of them all the same.
     const auto first = std::find(unclosed_.begin(), unclosed_.end(), true);
     if (first != unclosed_.end() && !reported_)
-      report_unclosed(tokens_[static_cast<std::size_t>(first - unclosed_.begin())], tokens_.back());
+      report_unclosed({static_cast<std::size_t>(first - unclosed_.begin())}, tokens_.back(),
+                      out_.back().end);
     return std::move(out_);
   }
 
@@ -82,6 +84,14 @@ class Balancer {
   std::vector<std::size_t> open_unclosed_;  // places in open_ of those that unclosed_ names
   std::size_t parens_ = 0, brackets_ = 0, braces_ = 0;
   std::vector<Token> out_;
+  // Opening brackets without partner that have been ended before one word, the innermost first.
+  struct Missing {
+    std::vector<std::size_t> openers;
+    Token before;
+    std::uint32_t after = 0;  // where the last word in front of that one ends
+    bool behind_open_text = false;
+  } missing_;
+  static constexpr std::size_t most_spelt = 8;
 
   std::size_t& count(TokenKind opener) {
     return opener == left_paren ? parens_ : opener == left_bracket ? brackets_ : braces_;
@@ -98,6 +108,7 @@ class Balancer {
     std::uint32_t indent = 0;
     for (std::size_t i = 0; i < tokens_.size(); ++i) {
       const Token& token = tokens_[i];
+      report_missing();
       switch (token.kind) {
         case newline:
           indent = token.indent;
@@ -133,6 +144,7 @@ class Balancer {
           out_.push_back(token);
       }
     }
+    report_missing();
   }
 
   // A line that sets a name, and begins no deeper than the line of the open bracket.
@@ -191,10 +203,12 @@ class Balancer {
   void close_missing(const Token& before) {
     const std::size_t opener = open_.back().token;
     balanced_ = false;
-    if (mode_ == Mode::searching)
+    if (mode_ == Mode::searching) {
       unclosed_[opener] = true;
-    else if (mode_ == Mode::repairing && unclosed_[opener])
-      report_unclosed(tokens_[opener], before);
+    } else if (mode_ == Mode::repairing && unclosed_[opener]) {
+      if (missing_.openers.empty()) missing_ = {{}, before, out_.back().end, behind_open_text()};
+      missing_.openers.push_back(opener);
+    }
     const std::uint32_t at = out_.back().end;
     const TokenKind kind = partner(top());
     pop();
@@ -212,26 +226,51 @@ class Balancer {
 
   // ---- Reports ----
 
+  // The last word is a text without closing quote, which may have swallowed the closing bracket.
+  bool behind_open_text() const {
+    const auto last =
+        std::find_if(out_.rbegin(), out_.rend(), [](const Token& token) { return !token.made_up; });
+    return last != out_.rend() && last->open;
+  }
+
+  // What was found to end at one place is one error, at the outermost bracket.
+  void report_missing() {
+    if (missing_.openers.empty()) return;
+    const Missing missing = std::exchange(missing_, {});
+    reported_ = true;
+    if (!missing.behind_open_text) report_unclosed(missing.openers, missing.before, missing.after);
+  }
+
   std::string line_of(const Token& token) const {
     return std::to_string(source_.position(token.begin).line);
   }
 
-  void report_unclosed(const Token& opener, const Token& before) {
+  // The innermost of `openers` comes first; they end behind `after`.
+  void report_unclosed(const std::vector<std::size_t>& openers, const Token& before,
+                       std::uint32_t after) {
     reported_ = true;
     if (diagnostics_.error_count() >= Diagnostics::give_up) return;
-    std::string help = "add " + std::string(describe(partner(opener.kind)));
+    const Token& opener = tokens_[openers.back()];
+    std::string ends;
+    for (std::size_t i = 0; i < openers.size() && i < most_spelt; ++i)
+      ends += describe(partner(tokens_[openers[i]].kind)).substr(1, 1);
+    ends = openers.size() > most_spelt ? "their partners" : "`" + ends + "`";
+    std::string what = std::string(describe(opener.kind)) + " is never closed";
+    if (const std::size_t more = openers.size() - 1)
+      what += ", nor " +
+              (more == 1 ? "is the bracket" : "are " + std::to_string(more) + " brackets") +
+              " in it";
+    std::string help = "add " + ends;
     if (before.kind == end)
       help += " after it";
     else if (line_of(before) == line_of(opener))
       help += " before " + std::string(describe(before.kind));
     else if (before.kind == newline &&
-             source_.position(out_.back().end).line == source_.position(opener.begin).line)
+             source_.position(after).line == source_.position(opener.begin).line)
       help += " on this line";
     else
       help += " before line " + line_of(before);
-    diagnostics_.add({Severity::error, "unclosed-bracket",
-                      std::string(describe(opener.kind)) + " is never closed", span(opener),
-                      std::string(describe(partner(opener.kind))), help});
+    diagnostics_.add({Severity::error, "unclosed-bracket", what, span(opener), ends, help});
   }
 
   void report_stray(const Token& token) {

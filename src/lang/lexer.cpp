@@ -124,6 +124,7 @@ class Scanner {
   FileId file_;
   Diagnostics& diagnostics_;
   TokenList list_;
+  static constexpr std::size_t longest_name = 255;
   std::size_t at_ = 0;
   std::uint32_t indent_ = 0;  // of this line, while only white space has been seen on it
   bool line_start_ = true;    // no word yet on this line
@@ -294,6 +295,12 @@ class Scanner {
   void scan_name() {
     const std::size_t begin = at_;
     while (is_word(peek())) ++at_;
+    if (at_ - begin > longest_name) {
+      diagnostics_.error("name-too-long", span(begin, at_),
+                         "this name has more than " + std::to_string(longest_name) + " characters",
+                         "choose a shorter name");
+      return emit(TokenKind::invalid, begin, at_);
+    }
     emit(keyword(text_.substr(begin, at_ - begin)), begin, at_);
   }
 
@@ -310,13 +317,14 @@ class Scanner {
       }
       skip_text_character("text");
     }
-    if (at_ < text_.size() && text_[at_] == quote) {
-      ++at_;
-    } else {
+    const bool open = at_ == text_.size() || text_[at_] == '\n';
+    if (open)
       diagnostics_.error("open-string", span(begin, at_), "this text has no closing quote",
                          std::string("put `") + quote + "` at its end, on the same line");
-    }
+    else
+      ++at_;
     emit(TokenKind::string, begin, at_);
+    list_.tokens.back().open = open;
   }
 
   void scan_symbol() {
@@ -337,6 +345,7 @@ class Scanner {
         continue;
       const std::size_t begin = at_;
       at_ += lookalike.text.size();
+      if (lookalike.instead.starts_with("write a straight")) skip_curly_quotes();
       diagnostics_.error("foreign-spelling", span(begin, at_),
                          "`" + std::string(lookalike.text) + "` does not belong to the language",
                          std::string(lookalike.instead));
@@ -349,6 +358,16 @@ class Scanner {
       return emit(spelling.kind, begin, at_);
     }
     scan_unknown();
+  }
+
+  // Behind a quote of a word processor: to its partner on this line, if it has one.
+  void skip_curly_quotes() {
+    for (std::size_t end = at_; end < text_.size() && text_[end] != '\n'; ++end)
+      for (const std::string_view quote : {"\u201d", "\u201c", "\u2019", "\u2018", "\"", "'"})
+        if (text_.substr(end).starts_with(quote)) {
+          at_ = end + quote.size();
+          return;
+        }
   }
 
   // Bytes that begin no word: reported once for each run of them.
@@ -364,7 +383,8 @@ class Scanner {
     }
     const auto is_unknown = [&] {
       const auto c = static_cast<unsigned char>(text_[at_]);
-      return c >= 0x80 || (c < 0x20 && !(c >= '\t' && c <= '\r')) || c == 0x7f;
+      return c >= 0x80 || (c < 0x20 && !(c >= '\t' && c <= '\r')) || c == 0x7f ||
+             std::string_view("@$`~\\").contains(static_cast<char>(c));
     };
     bool text_like = true;
     do {

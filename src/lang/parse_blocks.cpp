@@ -32,7 +32,11 @@ void Parser::statements(Block& block, const Layout& layout) {
       const bool closed = words_.tokens[position_ - 1].kind == right_brace;
       if (!at_statement_end() && !closed && !(at(left_brace) && !first_word_.empty())) {
         std::string help = "begin a new line, or set the statements apart by `;`";
-        if (at(left_paren)) help = "write `*` to multiply";
+        const TokenKind before = words_.tokens[position_ - 1].kind;
+        const bool factor = before == TokenKind::number || before == right_paren;
+        const bool sets = peek(1).kind >= assign;
+        if (at(left_paren) || (factor && !sets && (at(name) || at(TokenKind::number))))
+          help = "write `*` to multiply";
         if (at(question)) help = "write `condition ? one : other`";
         unexpected("the end of the statement", help);
         failed_ = true;

@@ -310,6 +310,7 @@ bool Parser::argument(CallExpr& call, int& below) {
 
 // a[i]  a[i, j]
 ExprPtr Parser::index(ExprPtr base) {
+  const bool juxtaposed = juxtaposed_;
   const Restore plain(juxtaposed_, false);
   const std::uint32_t begin = base->span.begin;
   int below = base->height;
@@ -319,7 +320,8 @@ ExprPtr Parser::index(ExprPtr base) {
   do {
     if (!element(node.indices, below)) return nullptr;
   } while (accept(comma));
-  if (!expect(right_bracket)) return nullptr;
+  const std::string help = juxtaposed ? "put a blank before a `[` that begins a new row" : "";
+  if (!expect(right_bracket, help)) return nullptr;
   return make(since(begin), std::move(node), below);
 }
 
@@ -347,8 +349,7 @@ bool Parser::at_metadata() const {
   return entry || peek(2).kind == right_bracket;
 }
 
-// ---- Errors
-// -----------------------------------------------------------------------------------------------------
+// ---- Errors -------------------------------------------------------------------------------------
 
 void Parser::report_missing_operand() {
   const TokenKind before = position_ > 0 ? words_.tokens[position_ - 1].kind : end;
@@ -356,6 +357,8 @@ void Parser::report_missing_operand() {
   std::string help;
   if (at(assign) && operator_of(before).level >= level_sum) {
     help = "write the operator and `=` without a space, as in `+=`";
+  } else if (at(assign) && before >= kw_function && before <= kw_not) {
+    help = "choose another name: " + std::string(describe(before)) + " is a word of the language";
   } else if (at(plus) && before == plus && adjacent) {
     help = "write `+= 1`";
   } else if (at(plus)) {

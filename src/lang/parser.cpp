@@ -16,8 +16,7 @@ Parser::Parser(const SourceMap& sources, FileId file, TokenList words, Diagnosti
       diagnostics_(diagnostics),
       limits_(limits) {}
 
-// ---- Words
-// ------------------------------------------------------------------------------------------------------
+// ---- Words --------------------------------------------------------------------------------------
 
 const Token& Parser::peek(std::size_t ahead) const {
   return words_.tokens[std::min(position_ + ahead, words_.tokens.size() - 1)];
@@ -56,8 +55,7 @@ std::string Parser::quote(const Span& place) const {
   return std::string(whole);
 }
 
-// ---- Errors and limits
-// ------------------------------------------------------------------------------------------
+// ---- Errors and limits --------------------------------------------------------------------------
 
 void Parser::report(std::string code, Span place, std::string message, std::string expected,
                     std::string suggestion) {
@@ -68,8 +66,8 @@ void Parser::report(std::string code, Span place, std::string message, std::stri
 
 void Parser::unexpected(std::string expected, std::string suggestion) {
   const Token& token = peek();
-  // The lexer has spoken of these.
-  if (token.kind == TokenKind::invalid || token.made_up) return;
+  // The lexer has spoken of these, and of the bracket that has swallowed what follows it.
+  if (token.kind == TokenKind::invalid || in_unclosed_bracket()) return;
 
   // What is missing at the end of a line is missing behind its last word.
   Span place = span(token);
@@ -81,6 +79,14 @@ void Parser::unexpected(std::string expected, std::string suggestion) {
     message = token.kind == TokenKind::end ? "the text ends too early" : "the line ends too early";
   }
   report("unexpected-word", place, std::move(message), std::move(expected), std::move(suggestion));
+}
+
+bool Parser::in_unclosed_bracket() const {
+  for (std::size_t i = position_;; ++i) {
+    const Token& token = words_.tokens[i];
+    if (token.made_up) return true;
+    if (token.kind == TokenKind::newline || token.kind == TokenKind::end) return false;
+  }
 }
 
 void Parser::stop(std::string code, Span place, std::string message, std::string suggestion) {
@@ -101,14 +107,14 @@ bool Parser::count_node(Span place) {
 
 Parser::Level::Level(Parser& parser) : parser_(parser) {
   if (++parser_.level_ <= parser_.limits_.max_nesting) return;
+  if (parser_.in_unclosed_bracket()) parser_.stopped_ = true;
   parser_.stop("nested-too-deep", parser_.span(parser_.peek()),
                "brackets, blocks and operators are nested more than " +
                    std::to_string(parser_.limits_.max_nesting) + " levels deep",
                "compute it in steps, or move the inner part into a function");
 }
 
-// ---- Entry
-// ------------------------------------------------------------------------------------------------------
+// ---- Entry --------------------------------------------------------------------------------------
 
 Program Parser::program() {
   Program program;

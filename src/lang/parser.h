@@ -10,13 +10,16 @@ namespace pse::lang {
 struct ParseLimits {
   std::size_t max_bytes = 4u << 20;
   int max_nesting = 200;  // of brackets, blocks, prefix and right-associative operators together
-  int max_height = 1000;  // of one expression's tree: a long chain a + b + c + ... is as high as it is long
+  // Of one expression's tree: a long chain a + b + c + ... is as high as it is long.
+  int max_height = 1000;
   std::size_t max_nodes = 1'000'000;
 };
 
-// Parses one source file. All errors go to `diagnostics`; the tree holds what could be understood and is only
-// meant to be used further when there were none. Never throws for any text; time and memory are linear in its size.
-Program parse(const SourceMap& sources, FileId file, Diagnostics& diagnostics, const ParseLimits& limits = {});
+// Parses one source file. All errors go to `diagnostics`; the tree holds what could be understood
+// and is only meant to be used further when there were none. Never throws for any text; time and
+// memory are linear in its size.
+Program parse(const SourceMap& sources, FileId file, Diagnostics& diagnostics,
+              const ParseLimits& limits = {});
 
 // One expression, as on the command line (`Name=value`). Null after an error.
 ExprPtr parse_expression(const SourceMap& sources, FileId file, Diagnostics& diagnostics);
@@ -25,8 +28,9 @@ ExprPtr parse_expression(const SourceMap& sources, FileId file, Diagnostics& dia
 std::string print_tokens(const SourceMap& sources, FileId file);
 std::string print_ast(const Program& program);
 
-// `pse fmt`: the program in pse's one layout. Idempotent; keeps comments, blank lines between statements (at most one)
-// and each block's choice of indentation or braces. Call only on a program that parsed without errors.
+// `pse fmt`: the program in pse's one layout. Idempotent; keeps comments, blank lines between
+// statements (at most one) and each block's choice of indentation or braces. Call only on a program
+// that parsed without errors.
 std::string format(const Program& program, const SourceMap& sources);
 
 }  // namespace pse::lang

@@ -52,6 +52,8 @@ class Parser {
               std::string suggestion = {});
   // The next word is not what may stand here.
   void unexpected(std::string expected, std::string suggestion = {});
+  // A closing bracket that the text lacks follows before the statement's end.
+  bool in_unclosed_bracket() const;
   // Gives up: the rest of the text reads as its end.
   void stop(std::string code, Span place, std::string message, std::string suggestion);
   bool count_node(Span place);

@@ -32,7 +32,8 @@ struct Token {
   TokenKind kind = TokenKind::end;
   bool space_before = false;  // white space, a comment or a line's start stands before it
   bool made_up = false;       // a closing bracket that the text lacks, put in to go on
-  bool juxtaposed = false;    // a `[` with neither comma nor `..` of its own: elements by white space
+  bool open = false;          // a text without closing quote; the lexer has reported it
+  bool juxtaposed = false;    // a `[` without comma or `..` of its own: elements by white space
   std::uint32_t begin = 0, end = 0;
   std::uint32_t indent = 0;  // of a newline: the column, from 0, in which the next line begins
 };

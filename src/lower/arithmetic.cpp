@@ -1,5 +1,6 @@
 // Operators on numbers, vectors and matrices, and the conversions between them.
 #include <cmath>
+#include <limits>
 
 #include "lower/lowering.h"
 
@@ -31,7 +32,7 @@ const char* symbol(BinaryOp op) {
 
 }  // namespace
 
-// ---- Making values ----------------------------------------------------------------------------------------------
+// ---- Making values ------------------------------------------------------------------------------
 
 ir::Value Lowering::constant(float value) {
   const ir::Value result = builder_->const_f32(value);
@@ -68,7 +69,7 @@ Typed Lowering::zero_of(const Typed& shape) {
   return zero;
 }
 
-// ---- Conversions ------------------------------------------------------------------------------------------------
+// ---- Conversions --------------------------------------------------------------------------------
 
 Typed Lowering::to_number(const Typed& value) {
   if (value.kind != Kind::boolean) return value;
@@ -77,8 +78,10 @@ Typed Lowering::to_number(const Typed& value) {
 
 Typed Lowering::to_truth(const Typed& value, const Span& span) {
   if (value.is_error() || value.kind == Kind::boolean) return value;
-  if (value.kind == Kind::number) return truth(emit(ir::Op::fne, {value.parts.front(), constant(0)}));
-  error("not-a-condition", span, "a condition is a truth value or a number, this is " + describe(value),
+  if (value.kind == Kind::number)
+    return truth(emit(ir::Op::fne, {value.parts.front(), constant(0)}));
+  error("not-a-condition", span,
+        "a condition is a truth value or a number, this is " + describe(value),
         value.kind == Kind::vector ? "compare one component, or its length" : "");
   return {};
 }
@@ -101,27 +104,40 @@ Typed Lowering::promote(const Typed& value, const Typed& shape) {
 std::optional<Typed> Lowering::common_shape(const Typed& a, const Typed& b) const {
   if (same_shape(a, b)) return a;
   if (!a.is_numeric() || !b.is_numeric()) return {};
-  const auto is_scalar = [](const Typed& v) { return v.kind == Kind::number || v.kind == Kind::boolean; };
+  const auto is_scalar = [](const Typed& v) {
+    return v.kind == Kind::number || v.kind == Kind::boolean;
+  };
   if (is_scalar(a) && is_scalar(b)) return a.kind == Kind::number ? a : b;
   if (is_scalar(a)) return b;
   if (is_scalar(b)) return a;
   return {};
 }
 
-// ---- Operators --------------------------------------------------------------------------------------------------
+// ---- Operators ----------------------------------------------------------------------------------
 
 ir::Value Lowering::power(ir::Value a, ir::Value b) {
-  // Small whole powers are products.
+  // Small whole powers are products; roots and the reciprocal are at most 0.75 ulp off.
   if (const auto exponent = known(b)) {
     if (*exponent == 1) return a;
     if (*exponent == 2) return emit(ir::Op::fmul, {a, a});
+    if (*exponent == -1) return emit(ir::Op::fdiv, {constant(1), a});
+    if (*exponent == 0.5f || *exponent == 0.25f) {
+      // As for pow, -0 counts as 0, and -infinity as infinity.
+      constexpr float infinity = std::numeric_limits<float>::infinity();
+      const ir::Value lowest = emit(ir::Op::feq, {a, constant(-infinity)});
+      const ir::Value base =
+          emit(ir::Op::select, {lowest, constant(infinity), emit(ir::Op::fadd, {a, constant(0)})});
+      const ir::Value root = emit(ir::Op::fsqrt, {base});
+      return *exponent == 0.5f ? root : emit(ir::Op::fsqrt, {root});
+    }
     if (*exponent == 3) return emit(ir::Op::fmul, {emit(ir::Op::fmul, {a, a}), a});
     if (*exponent == 4) {
       const ir::Value square = emit(ir::Op::fmul, {a, a});
       return emit(ir::Op::fmul, {square, square});
     }
   }
-  const auto result = builtins_->emit(*builder_, {.name = "pow", .arguments = {{a}, {b}}, .named = {}});
+  const auto result =
+      builtins_->emit(*builder_, {.name = "pow", .arguments = {{a}, {b}}, .named = {}});
   return result ? result->front() : a;
 }
 
@@ -143,7 +159,8 @@ ir::Value Lowering::scalar_op(BinaryOp op, ir::Value a, ir::Value b) {
     case BinaryOp::multiply: return emit(ir::Op::fmul, {a, b});
     case BinaryOp::divide: return emit(ir::Op::fdiv, {a, b});
     case BinaryOp::modulo:
-      return builtins_->emit(*builder_, {.name = "mod", .arguments = {{a}, {b}}, .named = {}})->front();
+      return builtins_->emit(*builder_, {.name = "mod", .arguments = {{a}, {b}}, .named = {}})
+          ->front();
     default: return power(a, b);
   }
 }
@@ -178,8 +195,9 @@ Typed Lowering::matrix_product(const Typed& a, const Typed& b, const Span& span)
     for (int c = 0; c < columns; ++c) {
       ir::Value sum = ir::no_value;
       for (int k = 0; k < inner; ++k) {
-        const ir::Value product = emit(ir::Op::fmul, {a.parts[static_cast<std::size_t>(r * inner + k)],
-                                                      b.parts[static_cast<std::size_t>(k * columns + c)]});
+        const ir::Value product =
+            emit(ir::Op::fmul, {a.parts[static_cast<std::size_t>(r * inner + k)],
+                                b.parts[static_cast<std::size_t>(k * columns + c)]});
         sum = sum == ir::no_value ? product : emit(ir::Op::fadd, {sum, product});
       }
       parts.push_back(sum);
@@ -197,14 +215,19 @@ Typed Lowering::arithmetic(BinaryOp op, const Typed& left, const Typed& right, c
   if (left.is_error() || right.is_error()) return {};
   const auto refuse = [&](const std::string& hint) {
     error("operand-types", span,
-          std::string("`") + symbol(op) + "` does not work on " + describe(left) + " and " + describe(right), hint);
+          std::string("`") + symbol(op) + "` does not work on " + describe(left) + " and " +
+              describe(right),
+          hint);
     return Typed{};
   };
   if (!left.is_numeric() || !right.is_numeric())
-    return refuse(left.kind == Kind::function || right.kind == Kind::function ? "call the function: `f(...)`" : "");
+    return refuse(left.kind == Kind::function || right.kind == Kind::function
+                      ? "call the function: `f(...)`"
+                      : "");
   const Typed a = to_number(left), b = to_number(right);
   const bool a_matrix = a.kind == Kind::matrix, b_matrix = b.kind == Kind::matrix;
-  if (op == BinaryOp::multiply && (a_matrix || b_matrix) && a.kind != Kind::number && b.kind != Kind::number)
+  if (op == BinaryOp::multiply && (a_matrix || b_matrix) && a.kind != Kind::number &&
+      b.kind != Kind::number)
     return matrix_product(a, b, span);
   if (a.kind != Kind::number && b.kind != Kind::number && !same_shape(a, b))
     return refuse("the two must have the same number of components");
@@ -212,7 +235,8 @@ Typed Lowering::arithmetic(BinaryOp op, const Typed& left, const Typed& right, c
   // Component by component; a number goes with every component.
   Typed result = a.kind == Kind::number ? b : a;
   for (std::size_t i = 0; i < result.parts.size(); ++i)
-    result.parts[i] = scalar_op(op, a.parts[a.kind == Kind::number ? 0 : i], b.parts[b.kind == Kind::number ? 0 : i]);
+    result.parts[i] = scalar_op(op, a.parts[a.kind == Kind::number ? 0 : i],
+                                b.parts[b.kind == Kind::number ? 0 : i]);
   return result;
 }
 
@@ -225,7 +249,8 @@ Typed Lowering::compare(BinaryOp op, const Typed& left, const Typed& right, cons
   const bool numbers = a.kind == Kind::number && b.kind == Kind::number;
   if (!numbers && !(equality && a.is_numeric() && common_shape(a, b))) {
     error("operand-types", span,
-          std::string("`") + symbol(op) + "` does not compare " + describe(left) + " and " + describe(right),
+          std::string("`") + symbol(op) + "` does not compare " + describe(left) + " and " +
+              describe(right),
           left.is_numeric() && right.is_numeric() ? "compare one component, or their lengths" : "");
     return {};
   }
@@ -243,7 +268,8 @@ Typed Lowering::compare(BinaryOp op, const Typed& left, const Typed& right, cons
   const std::size_t count = std::max(a.parts.size(), b.parts.size());
   ir::Value result = ir::no_value;
   for (std::size_t i = 0; i < count; ++i) {
-    const ir::Value here = one(a.parts[a.parts.size() == 1 ? 0 : i], b.parts[b.parts.size() == 1 ? 0 : i]);
+    const ir::Value here =
+        one(a.parts[a.parts.size() == 1 ? 0 : i], b.parts[b.parts.size() == 1 ? 0 : i]);
     if (result == ir::no_value)
       result = here;
     else

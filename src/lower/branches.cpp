@@ -1,5 +1,5 @@
-// What structured control does to variables: branches merge them, loops carry them. This is where the tree's mutable
-// variables become the IR's single assignments.
+// What structured control does to variables: branches merge them, loops carry them. This is where
+// the tree's mutable variables become the IR's single assignments.
 #include <algorithm>
 #include <utility>
 
@@ -10,18 +10,29 @@ namespace pse::lower {
 namespace {
 
 // Names bound in either map to something that differs.
-std::set<std::string> changed_names(const Variables& before, const Variables& a, const Variables& b) {
+std::set<std::string> changed_names(const Variables& before, const Variables& a,
+                                    const Variables& b) {
   std::set<std::string> names;
   const auto differs = [&](const Variables& after) {
     for (const auto& [name, value] : after) {
       const auto old = before.find(name);
-      if (old == before.end() || !same_shape(old->second, value) || old->second.parts != value.parts)
+      if (old == before.end() || !same_shape(old->second, value) ||
+          old->second.parts != value.parts)
         names.insert(name);
     }
   };
   differs(a);
   differs(b);
   return names;
+}
+
+constexpr const char *in_one = " in one branch and ", *in_other = " in the other";
+
+// What a message calls it.
+std::string spoken(const std::string& name) {
+  if (name == "%result") return "the returned value";
+  if (name == "%value") return "the value of `? :`";
+  return "`" + name + "`";
 }
 
 bool is_internal(const std::string& name) { return name.front() == '%'; }
@@ -39,8 +50,8 @@ bool always_sets(const lang::Block& block, const std::string& name) {
 
 }  // namespace
 
-void Lowering::branch(ir::Value condition, const std::function<void()>& if_true, const std::function<void()>& if_false,
-                      const Span& span) {
+void Lowering::branch(ir::Value condition, const std::function<void()>& if_true,
+                      const std::function<void()>& if_false, const Span& span) {
   // An `else` of an `else` is a region in a region, and all that walk through them recurse.
   constexpr int deepest = 500;
   if (branch_depth_ == deepest) {
@@ -69,13 +80,16 @@ void Lowering::branch(ir::Value condition, const std::function<void()>& if_true,
     Typed shape;
   };
   std::vector<Merge> merges;
-  const auto side = [&](Variables& after, ir::Region& region, const std::string& name, const Typed* other) -> Typed {
+  const auto side = [&](Variables& after, ir::Region& region, const std::string& name,
+                        const Typed* other) -> Typed {
     if (const auto found = after.find(name); found != after.end()) return found->second;
     builder_->begin_region(region);
     Typed value;
-    if (const StreamName* stream = is_internal(name) || call_ != &top_ ? nullptr : stream_name(name))
+    if (const StreamName* stream =
+            is_internal(name) || call_ != &top_ ? nullptr : stream_name(name))
       value = read_stream(*stream);
-    else if (other->kind == Kind::array || other->kind == Kind::function || other->kind == Kind::text)
+    else if (other->kind == Kind::array || other->kind == Kind::function ||
+             other->kind == Kind::text)
       value = *other;
     else
       value = zero_of(*other);
@@ -84,8 +98,10 @@ void Lowering::branch(ir::Value condition, const std::function<void()>& if_true,
   };
   for (const std::string& name : changed_names(before, after_then, after_else)) {
     const auto in_then = after_then.find(name), in_else = after_else.find(name);
-    Typed a = side(after_then, then_region, name, in_else == after_else.end() ? nullptr : &in_else->second);
-    Typed b = side(after_else, else_region, name, in_then == after_then.end() ? nullptr : &in_then->second);
+    Typed a = side(after_then, then_region, name,
+                   in_else == after_else.end() ? nullptr : &in_else->second);
+    Typed b = side(after_else, else_region, name,
+                   in_then == after_then.end() ? nullptr : &in_then->second);
     if (a.is_error() || b.is_error() || a.kind == Kind::nothing || b.kind == Kind::nothing) {
       variables()[name] = a.is_error() || a.kind == Kind::nothing ? a : b;
       continue;
@@ -93,7 +109,7 @@ void Lowering::branch(ir::Value condition, const std::function<void()>& if_true,
     if (!a.is_numeric() || !b.is_numeric()) {
       if (!same_shape(a, b))
         error("branch-types", span,
-              "`" + name + "` is " + describe(a) + " in one branch and " + describe(b) + " in the other",
+              spoken(name) + " is " + describe(a) + in_one + describe(b) + in_other,
               a.kind == Kind::text || a.kind == Kind::function
                   ? "texts and functions must be known when the program is compiled"
                   : "");
@@ -103,8 +119,7 @@ void Lowering::branch(ir::Value condition, const std::function<void()>& if_true,
     const auto shape = common_shape(a, b);
     if (!shape) {
       error("branch-types", span,
-            (name == "%result" ? std::string("the returned value") : "`" + name + "`") + " is " + describe(a) +
-                " in one branch and " + describe(b) + " in the other");
+            spoken(name) + " is " + describe(a) + in_one + describe(b) + in_other);
       variables()[name] = Typed{};
       continue;
     }
@@ -138,7 +153,9 @@ void Lowering::branch(ir::Value condition, const std::function<void()>& if_true,
 
 Typed Lowering::branch_value(ir::Value condition, const std::function<Typed()>& if_true,
                              const std::function<Typed()>& if_false, const Span& span) {
-  branch(condition, [&] { variables()["%value"] = if_true(); }, [&] { variables()["%value"] = if_false(); }, span);
+  branch(
+      condition, [&] { variables()["%value"] = if_true(); },
+      [&] { variables()["%value"] = if_false(); }, span);
   const auto found = variables().find("%value");
   if (found == variables().end()) return {};
   Typed value = std::move(found->second);
@@ -149,7 +166,8 @@ Typed Lowering::branch_value(ir::Value condition, const std::function<Typed()>& 
 void Lowering::loop(const std::set<std::string>& assigned, const lang::Block& body_block,
                     const std::function<ir::Value()>& condition, const std::function<void()>& body,
                     const Span& span) {
-  // Carry what the body assigns: names bound before, and names first set inside that are read after the loop.
+  // Carry what the body assigns: names bound before, and names first set inside that are read after
+  // the loop.
   struct Carried {
     std::string name;
     Typed shape;   // with the parameters as parts
@@ -175,7 +193,8 @@ void Lowering::loop(const std::set<std::string>& assigned, const lang::Block& bo
   Diagnostics* const outer_diagnostics = diagnostics_;
   constexpr int most_attempts = 6;
   for (int attempt = 0;; ++attempt) {
-    // Lower head and body with the shapes believed so far, into a region that is dropped if they turn out wrong.
+    // Lower head and body with the shapes believed so far, into a region that is dropped if they
+    // turn out wrong.
     Diagnostics attempt_diagnostics;
     diagnostics_ = &attempt_diagnostics;
     ir::Region head, body_region;
@@ -211,8 +230,8 @@ void Lowering::loop(const std::set<std::string>& assigned, const lang::Block& bo
       const auto shape = common_shape(c.initial, now);
       if (!shape) {
         diagnostics_->error("loop-types", span,
-                            "`" + c.name + "` is " + describe(c.initial) + " before the loop and " + describe(now) +
-                                " in it");
+                            "`" + c.name + "` is " + describe(c.initial) + " before the loop and " +
+                                describe(now) + " in it");
         continue;
       }
       if (!same_shape(*shape, c.initial)) {
@@ -222,15 +241,19 @@ void Lowering::loop(const std::set<std::string>& assigned, const lang::Block& bo
         body_region.yields.insert(body_region.yields.end(), next.parts.begin(), next.parts.end());
       }
     }
-    // A name that every turn sets needs no value from the turn before: it joins without lowering the body again.
+    // A name that every turn sets needs no value from the turn before: it joins without lowering
+    // the body again.
     std::vector<std::pair<std::string, Typed>> first_set, joining;
     for (const auto& [name, value] : after) {
       if (before.contains(name) || name == "%value" || !value.is_numeric()) continue;
-      if (std::any_of(carried.begin(), carried.end(), [&](const Carried& c) { return c.name == name; })) continue;
+      if (std::any_of(carried.begin(), carried.end(),
+                      [&](const Carried& c) { return c.name == name; }))
+        continue;
       const bool needed = is_internal(name) || call_ == &top_ ||
                           count_mentions(*call_->body, name) > count_mentions(body_block, name);
       if (!needed) continue;
-      (is_internal(name) || always_sets(body_block, name) ? joining : first_set).emplace_back(name, value);
+      (is_internal(name) || always_sets(body_block, name) ? joining : first_set)
+          .emplace_back(name, value);
     }
     builder_->end_region();
     restore();
@@ -274,9 +297,11 @@ void Lowering::loop(const std::set<std::string>& assigned, const lang::Block& bo
       if (!before.contains(name) && (value.kind == Kind::array || value.kind == Kind::function))
         variables()[name] = value;
     std::vector<ir::Value> initial;
-    for (const Carried& c : carried) initial.insert(initial.end(), c.initial.parts.begin(), c.initial.parts.end());
+    for (const Carried& c : carried)
+      initial.insert(initial.end(), c.initial.parts.begin(), c.initial.parts.end());
     builder_->set_span(span);
-    const std::vector<ir::Value> results = builder_->emit_loop(initial, std::move(head), std::move(body_region));
+    const std::vector<ir::Value> results =
+        builder_->emit_loop(initial, std::move(head), std::move(body_region));
     std::size_t next = 0;
     for (const Carried& c : carried) {
       Typed value = c.initial;

@@ -105,8 +105,9 @@ std::vector<IrFloat> body(Form form, bool periodic, Numbers floats, std::span<co
 std::expected<std::vector<IrFloat>, std::string> position(const BuiltinScope& scope,
                                                           const BoundCall& call) {
   if (call.arguments[0].size() > 4) {
-    return std::unexpected(fmt::format("`{}` takes a position of 1 to 4 coordinates, and this has {}",
-                                       call.name, call.arguments[0].size()));
+    return std::unexpected(
+        fmt::format("`{}` takes a position of 1 to 4 coordinates, and this has {}", call.name,
+                    call.arguments[0].size()));
   }
   return scope.numbers(call.arguments[0]);
 }

@@ -20,7 +20,8 @@ Typed Lowering::lower_call(const CallExpr& call, const Span& span) {
       bound = top_.variables.find(name);
       is_bound = bound != top_.variables.end();
     }
-    // A name may be both a value and a function (`fire = fire(p)`): a value cannot be called, so the function is meant.
+    // A name may be both a value and a function (`fire = fire(p)`): a value cannot be called, so
+    // the function is meant.
     if (is_bound && bound->second.kind == Kind::function) {
       function = bound->second.function;
       passed = true;
@@ -28,7 +29,8 @@ Typed Lowering::lower_call(const CallExpr& call, const Span& span) {
       function = find_function(name, call_->scope);
     if (!function && is_bound) {
       if (!bound->second.is_error())
-        error("not-a-function", call.callee->span, "`" + name + "` is " + describe(bound->second) + ", not a function");
+        error("not-a-function", call.callee->span,
+              "`" + name + "` is " + describe(bound->second) + ", not a function");
       for (const Argument& argument : call.arguments) lower(*argument.value);
       return {};
     }
@@ -38,7 +40,8 @@ Typed Lowering::lower_call(const CallExpr& call, const Span& span) {
       function = called.function;
       if (const auto* member = std::get_if<MemberExpr>(&call.callee->node)) name = member->name;
     } else {
-      if (!called.is_error()) error("not-a-function", call.callee->span, describe(called) + " cannot be called");
+      if (!called.is_error())
+        error("not-a-function", call.callee->span, describe(called) + " cannot be called");
       return {};
     }
   }
@@ -64,10 +67,11 @@ Typed Lowering::lower_call(const CallExpr& call, const Span& span) {
     }
   }
   if (failed) return {};
-  // A function that was passed to the library, or into another file, takes of what it is called with
-  // there as much as it asks for, so that a marcher may offer point, normal and eye to a colour that
-  // needs only the point.
-  const bool offered = function->scope != call_->scope || library_texts_.contains(call_->scope->file);
+  // A function that was passed to the library, or into another file, takes of what it is called
+  // with there as much as it asks for, so that a marcher may offer point, normal and eye to a
+  // colour that needs only the point.
+  const bool offered =
+      function->scope != call_->scope || library_texts_.contains(call_->scope->file);
   if (passed && function->definition && offered) {
     std::size_t room = function->definition->parameters.size();
     std::erase_if(arguments, [&](const CallArgument& argument) {
@@ -78,18 +82,20 @@ Typed Lowering::lower_call(const CallExpr& call, const Span& span) {
   return call_function(*function, std::move(arguments), span, name);
 }
 
-Typed Lowering::call_function(const FunctionRef& function, std::vector<CallArgument> arguments, const Span& span,
-                              const std::string& name) {
+Typed Lowering::call_function(const FunctionRef& function, std::vector<CallArgument> arguments,
+                              const Span& span, const std::string& name) {
   if (function.definition) return call_user(function, arguments, span);
   if (is_intrinsic(function.builtin)) return call_intrinsic(function.builtin, arguments, span);
   return call_builtin(function.builtin.empty() ? name : function.builtin, arguments, span);
 }
 
-Typed Lowering::call_user(const FunctionRef& function, std::vector<CallArgument>& arguments, const Span& span) {
+Typed Lowering::call_user(const FunctionRef& function, std::vector<CallArgument>& arguments,
+                          const Span& span) {
   const FunctionStmt& definition = *function.definition;
 
-  // No recursion: a function is lowered into its caller, so it cannot be its own caller. With another function as its
-  // argument it is another function: smooth(f, p) may be called inside an f that is itself smoothed.
+  // No recursion: a function is lowered into its caller, so it cannot be its own caller. With
+  // another function as its argument it is another function: smooth(f, p) may be called inside an f
+  // that is itself smoothed.
   std::vector<Typed> functions;
   for (const CallArgument& argument : arguments)
     if (argument.value.kind == Kind::function) functions.push_back(argument.value);
@@ -97,7 +103,8 @@ Typed Lowering::call_user(const FunctionRef& function, std::vector<CallArgument>
   for (const Call* call = call_; call; call = call->caller) {
     ++calls;
     if (call->definition == &definition &&
-        std::equal(functions.begin(), functions.end(), call->functions.begin(), call->functions.end(), same_shape)) {
+        std::equal(functions.begin(), functions.end(), call->functions.begin(),
+                   call->functions.end(), same_shape)) {
       error("recursion", span,
             "`" + definition.name + "` calls itself" +
                 (call == call_ ? std::string() : " through `" + call_->definition->name + "`"),
@@ -125,8 +132,9 @@ Typed Lowering::call_user(const FunctionRef& function, std::vector<CallArgument>
     if (parameter.empty()) {
       if (place >= definition.parameters.size()) {
         error("argument-count", argument.span,
-              "`" + definition.name + "` takes " + std::to_string(definition.parameters.size()) + " argument" +
-                  (definition.parameters.size() == 1 ? "" : "s") + ", this is one more");
+              "`" + definition.name + "` takes " + std::to_string(definition.parameters.size()) +
+                  " argument" + (definition.parameters.size() == 1 ? "" : "s") +
+                  ", this is one more");
         return {};
       }
       parameter = definition.parameters[place++].name;
@@ -138,7 +146,8 @@ Typed Lowering::call_user(const FunctionRef& function, std::vector<CallArgument>
         exists = exists || p.name == parameter;
       }
       if (!exists) {
-        error("unknown-argument", argument.span, "`" + definition.name + "` has no parameter `" + parameter + "`",
+        error("unknown-argument", argument.span,
+              "`" + definition.name + "` has no parameter `" + parameter + "`",
               did_you_mean(parameter, names));
         return {};
       }
@@ -163,7 +172,8 @@ Typed Lowering::call_user(const FunctionRef& function, std::vector<CallArgument>
       if (inner.variables.contains(parameter.name)) continue;
       if (!parameter.default_value) {
         leave();
-        error("argument-count", span, "`" + definition.name + "` needs a value for `" + parameter.name + "`");
+        error("argument-count", span,
+              "`" + definition.name + "` needs a value for `" + parameter.name + "`");
         return {};
       }
       inner.variables[parameter.name] = lower(*parameter.default_value);
@@ -183,7 +193,8 @@ Typed Lowering::call_user(const FunctionRef& function, std::vector<CallArgument>
   return result;
 }
 
-Typed Lowering::call_builtin(const std::string& name, std::vector<CallArgument>& arguments, const Span& span) {
+Typed Lowering::call_builtin(const std::string& name, std::vector<CallArgument>& arguments,
+                             const Span& span) {
   // Shapes become component lists, positional and by name.
   BuiltinCall call{.name = name, .arguments = {}, .named = {}};
   Typed longest = number(ir::no_value);
@@ -203,8 +214,10 @@ Typed Lowering::call_builtin(const std::string& name, std::vector<CallArgument>&
   if (const Builtin* builtin = find_builtin(name)) {
     const std::vector<std::string> parameters = parameter_names(*builtin);
     for (const CallArgument& argument : arguments)
-      if (!argument.name.empty() && std::ranges::find(parameters, argument.name) == parameters.end()) {
-        error("unknown-argument", argument.span, "`" + name + "` has no parameter `" + argument.name + "`",
+      if (!argument.name.empty() &&
+          std::ranges::find(parameters, argument.name) == parameters.end()) {
+        error("unknown-argument", argument.span,
+              "`" + name + "` has no parameter `" + argument.name + "`",
               did_you_mean(argument.name, parameters));
         return {};
       }

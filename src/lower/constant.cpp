@@ -34,7 +34,8 @@ std::optional<float> apply(BinaryOp op, float a, float b) {
     case BinaryOp::subtract: return a - b;
     case BinaryOp::multiply: return a * b;
     case BinaryOp::divide: return a / b;
-    case BinaryOp::power: return static_cast<float>(std::pow(static_cast<double>(a), static_cast<double>(b)));
+    case BinaryOp::power:
+      return static_cast<float>(std::pow(static_cast<double>(a), static_cast<double>(b)));
     default: return {};
   }
 }
@@ -84,7 +85,8 @@ std::optional<ConstantValue> constant_value(const Expr& expr) {
   if (const auto* text = std::get_if<StringExpr>(&expr.node))
     return ConstantValue{.numbers = {}, .text = text->value, .is_text = true};
   if (const auto* name = std::get_if<NameExpr>(&expr.node)) {
-    if (const auto value = named_constant(name->name)) return ConstantValue{.numbers = {*value}, .text = {}};
+    if (const auto value = named_constant(name->name))
+      return ConstantValue{.numbers = {*value}, .text = {}};
     if (const auto rgb = named_colour(name->name))
       return ConstantValue{.numbers = {rgb->begin(), rgb->end()}, .text = {}};
     return {};
@@ -104,7 +106,8 @@ std::optional<ConstantValue> constant_value(const Expr& expr) {
     const std::size_t count = std::max(a->numbers.size(), b->numbers.size());
     ConstantValue result;
     for (std::size_t i = 0; i < count; ++i) {
-      if ((a->numbers.size() != 1 && i >= a->numbers.size()) || (b->numbers.size() != 1 && i >= b->numbers.size()))
+      if ((a->numbers.size() != 1 && i >= a->numbers.size()) ||
+          (b->numbers.size() != 1 && i >= b->numbers.size()))
         return {};
       const auto value = apply(binary->op, a->numbers[a->numbers.size() == 1 ? 0 : i],
                                b->numbers[b->numbers.size() == 1 ? 0 : i]);

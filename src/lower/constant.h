@@ -17,7 +17,8 @@ struct ConstantValue {
   bool is_boolean = false;
 };
 
-// The value of an expression made of literals, named constants (PI, white, ...), vectors and arithmetic alone; else nothing.
+// The value of an expression made of literals, named constants (PI, white, ...), vectors and
+// arithmetic alone; else nothing.
 std::optional<ConstantValue> constant_value(const lang::Expr& expr);
 
 // PI, TAU, E, INF, NAN.

@@ -12,7 +12,8 @@ using namespace lang;
 
 namespace {
 
-constexpr int deepest = 1500;  // nested expressions, statements and calls; bounds the machine's stack
+// Nested expressions, statements and calls; bounds the machine's stack.
+constexpr int deepest = 1500;
 
 struct DepthGuard {
   explicit DepthGuard(int& depth) : depth_(depth) { ++depth_; }
@@ -27,7 +28,8 @@ struct DepthGuard {
 Typed Lowering::lower(const Expr& expr) {
   const DepthGuard guard(depth_);
   if (depth_ > deepest) {
-    error("too-deep", expr.span, "this is nested too deeply", "give parts of it names of their own");
+    error("too-deep", expr.span, "this is nested too deeply",
+          "give parts of it names of their own");
     throw TooLarge{};
   }
   builder_->set_span(expr.span);
@@ -39,7 +41,8 @@ Typed Lowering::lower(const Expr& expr) {
 
 Typed Lowering::lower_node(const Expr& expr) {
   const Span& span = expr.span;
-  if (const auto* e = std::get_if<NumberExpr>(&expr.node)) return number(static_cast<float>(e->value));
+  if (const auto* e = std::get_if<NumberExpr>(&expr.node))
+    return number(static_cast<float>(e->value));
   if (const auto* e = std::get_if<NameExpr>(&expr.node)) return lower_name(e->name, span);
   if (const auto* e = std::get_if<BinaryExpr>(&expr.node)) return lower_binary(expr, *e);
   if (const auto* e = std::get_if<CallExpr>(&expr.node)) return lower_call(*e, span);
@@ -48,7 +51,8 @@ Typed Lowering::lower_node(const Expr& expr) {
   if (const auto* e = std::get_if<IndexExpr>(&expr.node)) return lower_index(*e, span);
   if (const auto* e = std::get_if<MemberExpr>(&expr.node)) return lower_member(*e, span);
   if (const auto* e = std::get_if<ConditionalExpr>(&expr.node)) return lower_conditional(*e, span);
-  if (const auto* e = std::get_if<BoolExpr>(&expr.node)) return truth(builder_->const_bool(e->value));
+  if (const auto* e = std::get_if<BoolExpr>(&expr.node))
+    return truth(builder_->const_bool(e->value));
   if (const auto* e = std::get_if<StringExpr>(&expr.node))
     return {.kind = Kind::text, .parts = {}, .text = e->value, .function = {}};
   if (const auto* e = std::get_if<UnaryExpr>(&expr.node)) {
@@ -59,9 +63,10 @@ Typed Lowering::lower_node(const Expr& expr) {
   }
   const auto& range = std::get<RangeExpr>(expr.node);
   const auto first = constant_value(*range.first), last = constant_value(*range.last);
-  const auto step = range.step ? constant_value(*range.step) : ConstantValue{.numbers = {1.0f}, .text = {}};
-  if (first && last && step && first->numbers.size() == 1 && last->numbers.size() == 1 && step->numbers.size() == 1 &&
-      step->numbers[0] != 0) {
+  const auto step =
+      range.step ? constant_value(*range.step) : ConstantValue{.numbers = {1.0f}, .text = {}};
+  if (first && last && step && first->numbers.size() == 1 && last->numbers.size() == 1 &&
+      step->numbers.size() == 1 && step->numbers[0] != 0) {
     // A short constant range is a vector.
     const float count = (last->numbers[0] - first->numbers[0]) / step->numbers[0];
     if (count >= 1 && count < 256) {
@@ -84,13 +89,15 @@ Typed Lowering::lower_vector(const std::vector<ExprPtr>& elements, const Span& s
     const Typed& value = values.back();
     failed = failed || value.is_error();
     if (!value.is_error() && value.kind != Kind::number && value.kind != Kind::vector) {
-      error("element-type", element->span, "a vector is made of numbers, this is " + describe(value));
+      error("element-type", element->span,
+            "a vector is made of numbers, this is " + describe(value));
       failed = true;
     }
   }
   if (failed) return {};
   if (values.empty()) {
-    error("empty-vector", span, "a vector needs at least one number", "for an empty array write `array(1000)`");
+    error("empty-vector", span, "a vector needs at least one number",
+          "for an empty array write `array(1000)`");
     return {};
   }
 
@@ -99,7 +106,8 @@ Typed Lowering::lower_vector(const std::vector<ExprPtr>& elements, const Span& s
   for (const Typed& value : values)
     is_matrix = is_matrix && value.kind == Kind::vector && value.rows == values.front().rows;
   std::vector<ir::Value> parts;
-  for (const Typed& value : values) parts.insert(parts.end(), value.parts.begin(), value.parts.end());
+  for (const Typed& value : values)
+    parts.insert(parts.end(), value.parts.begin(), value.parts.end());
   if (parts.size() > 4096) {
     error("vector-size", span, "a vector has at most 4096 components");
     return {};
@@ -115,7 +123,8 @@ Typed Lowering::lower_vector(const std::vector<ExprPtr>& elements, const Span& s
 }
 
 Typed Lowering::lower_binary(const Expr& expr, const BinaryExpr& binary) {
-  if (binary.op == BinaryOp::logical_and || binary.op == BinaryOp::logical_or) return lower_logical(expr, binary);
+  if (binary.op == BinaryOp::logical_and || binary.op == BinaryOp::logical_or)
+    return lower_logical(expr, binary);
   const Typed a = lower(*binary.left);
   const Typed b = lower(*binary.right);
   builder_->set_span(expr.span);
@@ -138,7 +147,9 @@ Typed Lowering::lower_logical(const Expr& expr, const BinaryExpr& binary) {
   }
   // The right side is evaluated only where the left does not decide.
   const auto right = [&] { return to_truth(lower(*binary.right), binary.right->span); };
-  const auto decided = [&](bool value) { return [this, value] { return truth(builder_->const_bool(value)); }; };
+  const auto decided = [&](bool value) {
+    return [this, value] { return truth(builder_->const_bool(value)); };
+  };
   if (binary.op == BinaryOp::logical_and)
     return branch_value(a.parts.front(), right, decided(false), expr.span);
   return branch_value(a.parts.front(), decided(true), right, expr.span);
@@ -146,29 +157,36 @@ Typed Lowering::lower_logical(const Expr& expr, const BinaryExpr& binary) {
 
 Typed Lowering::lower_conditional(const ConditionalExpr& conditional, const Span& span) {
   const Typed condition = to_truth(lower(*conditional.condition), conditional.condition->span);
-  const ir::Value value = condition.is_error() ? builder_->const_bool(false) : condition.parts.front();
-  return branch_value(value, [&] { return lower(*conditional.if_true); }, [&] { return lower(*conditional.if_false); },
-                      span);
+  const ir::Value value =
+      condition.is_error() ? builder_->const_bool(false) : condition.parts.front();
+  return branch_value(
+      value, [&] { return lower(*conditional.if_true); },
+      [&] { return lower(*conditional.if_false); }, span);
 }
 
-Typed Lowering::element_of(const Typed& base, const Typed& index, const Span& span, const std::string& what) {
+Typed Lowering::element_of(const Typed& base, const Typed& index, const Span& span,
+                           const std::string& what) {
   // A vector's component or a matrix's row.
   const int stride = base.kind == Kind::matrix ? base.columns : 1;
   const auto row = [&](int at) {
-    std::vector<ir::Value> parts(base.parts.begin() + at * stride, base.parts.begin() + (at + 1) * stride);
-    return stride == 1 && base.kind != Kind::matrix ? number(parts.front()) : vector(std::move(parts));
+    std::vector<ir::Value> parts(base.parts.begin() + at * stride,
+                                 base.parts.begin() + (at + 1) * stride);
+    return stride == 1 && base.kind != Kind::matrix ? number(parts.front())
+                                                    : vector(std::move(parts));
   };
   const std::string name = what.empty() ? "" : " of `" + what + "`";
   if (const auto fixed = known(index.parts.front())) {
     if (!(*fixed >= 1 && *fixed < static_cast<float>(base.rows + 1))) {
-      error("index-range", span, "this index" + name + " is outside 1.." + std::to_string(base.rows),
+      error("index-range", span,
+            "this index" + name + " is outside 1.." + std::to_string(base.rows),
             "indices count from 1");
       return {};
     }
     return row(static_cast<int>(*fixed) - 1);
   }
   const ir::Value at = to_index(index);
-  add_check(emit(ir::Op::band, {emit(ir::Op::ile, {integer(0), at}), emit(ir::Op::ilt, {at, integer(base.rows)})}),
+  add_check(emit(ir::Op::band, {emit(ir::Op::ile, {integer(0), at}),
+                                emit(ir::Op::ilt, {at, integer(base.rows)})}),
             "index" + name + " is outside 1.." + std::to_string(base.rows), span);
   Typed result = row(0);
 
@@ -178,8 +196,10 @@ Typed Lowering::element_of(const Typed& base, const Typed& index, const Span& sp
   if (all_known) {
     for (int c = 0; c < stride; ++c) {
       std::vector<float> column;
-      for (int k = 0; k < base.rows; ++k) column.push_back(*known(base.parts[static_cast<std::size_t>(k * stride + c)]));
-      result.parts[static_cast<std::size_t>(c)] = emit(ir::Op::table_f32, {at}, constant_table(std::move(column)));
+      for (int k = 0; k < base.rows; ++k)
+        column.push_back(*known(base.parts[static_cast<std::size_t>(k * stride + c)]));
+      result.parts[static_cast<std::size_t>(c)] =
+          emit(ir::Op::table_f32, {at}, constant_table(std::move(column)));
     }
     return result;
   }
@@ -223,10 +243,12 @@ Typed Lowering::lower_index(const IndexExpr& index, const Span& span) {
   const std::string what = name ? name->name : "";
   if (base.kind == Kind::array && positions.size() == 1)
     return load_element(base, to_index(positions[0]), span, true);
-  if (base.kind == Kind::vector && positions.size() == 1) return element_of(base, positions[0], span, what);
+  if (base.kind == Kind::vector && positions.size() == 1)
+    return element_of(base, positions[0], span, what);
   if (base.kind == Kind::matrix && positions.size() <= 2) {
     const Typed row = element_of(base, positions[0], span, what);
-    return positions.size() == 1 || row.is_error() ? row : element_of(row, positions[1], span, what);
+    return positions.size() == 1 || row.is_error() ? row
+                                                   : element_of(row, positions[1], span, what);
   }
   error("index-base", span,
         base.kind == Kind::vector || base.kind == Kind::matrix || base.kind == Kind::array
@@ -237,8 +259,10 @@ Typed Lowering::lower_index(const IndexExpr& index, const Span& span) {
 
 Typed Lowering::lower_member(const MemberExpr& member, const Span& span) {
   // A channel of a named image, when no variable hides it.
-  if (const auto* base = std::get_if<NameExpr>(&member.base->node); base && !variables().contains(base->name)) {
-    if (const StreamName* channel = stream_name(base->name + "." + member.name)) return read_stream(*channel);
+  if (const auto* base = std::get_if<NameExpr>(&member.base->node);
+      base && !variables().contains(base->name)) {
+    if (const StreamName* channel = stream_name(base->name + "." + member.name))
+      return read_stream(*channel);
     bool is_image = false;
     std::vector<std::string> channels;
     for (const StreamName& known_name : options_.stream)
@@ -248,10 +272,12 @@ Typed Lowering::lower_member(const MemberExpr& member, const Span& span) {
       }
     if (is_image && !stream_name(base->name)) {
       error("unknown-channel", member.name_span,
-            "image `" + base->name + "` has no channel `" + member.name + "`", did_you_mean(member.name, channels));
+            "image `" + base->name + "` has no channel `" + member.name + "`",
+            did_you_mean(member.name, channels));
       return {};
     }
-    if (const auto module = call_->scope->named_imports.find(base->name); module != call_->scope->named_imports.end()) {
+    if (const auto module = call_->scope->named_imports.find(base->name);
+        module != call_->scope->named_imports.end()) {
       bool found = false;
       const Typed value = lower_module_constant(module->second, member.name, span, found);
       if (found) return value;
@@ -277,13 +303,15 @@ Typed Lowering::lower_member(const MemberExpr& member, const Span& span) {
       if (at == std::string_view::npos || at >= base.parts.size()) break;
       parts.push_back(base.parts[at]);
     }
-    if (parts.size() == member.name.size()) return parts.size() == 1 ? number(parts.front()) : vector(parts);
+    if (parts.size() == member.name.size())
+      return parts.size() == 1 ? number(parts.front()) : vector(parts);
   }
   // The first letter that names nothing is the one to look at.
   std::string wrong = member.name;
   for (const std::string_view letters : {"xyzw", "rgba", "uv"}) {
     if (letters.find(member.name.front()) == std::string_view::npos) continue;
-    const auto outside = std::ranges::find_if(member.name, [&](char letter) { return letters.find(letter) >= base.parts.size(); });
+    const auto outside = std::ranges::find_if(
+        member.name, [&](char letter) { return letters.find(letter) >= base.parts.size(); });
     if (outside != member.name.end()) wrong = *outside;
   }
   error("unknown-component", member.name_span, describe(base) + " has no component `" + wrong + "`",

@@ -1,4 +1,7 @@
-// Builtins whose meaning depends on the shapes of their arguments, so that no program could say them.
+// Builtins whose meaning depends on the shapes of their arguments, so that no program could say
+// them.
+#include <fmt/format.h>
+
 #include <limits>
 
 #include "lower/lowering.h"
@@ -7,9 +10,11 @@ namespace pse::lower {
 
 namespace {
 
-constexpr const char* names[] = {"transpose", "count", "size",    "min",    "max",   "select",
-                                 "any",    "all",  "array",     "texture", "texture_size", "volume", "number", "vector", "identity",
-                                 "isnan",  "isfinite", "Dx", "Dy", "filterwidth", "trace",    "radiance", "visible", "require"};
+constexpr const char* names[] = {"transpose",    "count",    "size",    "min",    "max",
+                                 "select",       "any",      "all",     "array",  "texture",
+                                 "texture_size", "volume",   "number",  "vector", "identity",
+                                 "isnan",        "isfinite", "Dx",      "Dy",     "filterwidth",
+                                 "trace",        "radiance", "visible", "require"};
 
 }  // namespace
 
@@ -19,10 +24,13 @@ bool Lowering::is_intrinsic(const std::string& name) const {
   return false;
 }
 
-std::vector<std::string> Lowering::intrinsic_names() const { return {std::begin(names), std::end(names)}; }
+std::vector<std::string> Lowering::intrinsic_names() const {
+  return {std::begin(names), std::end(names)};
+}
 
 // min, max, any, all: over the arguments component by component, or over one vector's components.
-Typed Lowering::intrinsic_fold(const std::string& name, std::vector<CallArgument>& arguments, const Span& span) {
+Typed Lowering::intrinsic_fold(const std::string& name, std::vector<CallArgument>& arguments,
+                               const Span& span) {
   if (arguments.empty()) {
     error("argument-count", span, "`" + name + "` needs at least one argument");
     return {};
@@ -36,8 +44,8 @@ Typed Lowering::intrinsic_fold(const std::string& name, std::vector<CallArgument
   for (CallArgument& argument : arguments) {
     argument.value = to_number(argument.value);
     if (!argument.value.is_numeric()) {
-      error("argument-type", argument.span, "`" + name + "` works on numbers and vectors, this is " +
-                                                describe(argument.value));
+      error("argument-type", argument.span,
+            "`" + name + "` works on numbers and vectors, this is " + describe(argument.value));
       return {};
     }
     if (logical)
@@ -63,13 +71,15 @@ Typed Lowering::intrinsic_fold(const std::string& name, std::vector<CallArgument
     }
     const Typed a = promote(result, *shape), b = promote(next, *shape);
     result = *shape;
-    for (std::size_t c = 0; c < result.parts.size(); ++c) result.parts[c] = fold(a.parts[c], b.parts[c]);
+    for (std::size_t c = 0; c < result.parts.size(); ++c)
+      result.parts[c] = fold(a.parts[c], b.parts[c]);
   }
   return result;
 }
 
 Typed Lowering::intrinsic_texture(std::vector<CallArgument>& arguments, const Span& span) {
-  // texture(file, u, v, layer, filter, wrap, width): the first three by place, the others by name or place.
+  // texture(file, u, v, layer, filter, wrap, width): the first three by place, the others by name
+  // or place.
   const char* const order[] = {"file", "u", "v", "layer", "filter", "wrap", "width"};
   std::map<std::string, CallArgument*> given;
   std::size_t place = 0;
@@ -88,27 +98,33 @@ Typed Lowering::intrinsic_texture(std::vector<CallArgument>& arguments, const Sp
     bool known_name = false;
     for (const char* candidate : order) known_name = known_name || name == candidate;
     if (!known_name) {
-      error("unknown-argument", argument.span, "`texture` takes (file, u, v, layer, filter, wrap, width)");
+      error("unknown-argument", argument.span,
+            "`texture` takes (file, u, v, layer, filter, wrap, width)");
       return {};
     }
     given[name] = &argument;
   }
-  const auto text = [&](const char* name, const char* otherwise, std::initializer_list<const char*> allowed) {
+  const auto text = [&](const char* name, const char* otherwise,
+                        std::initializer_list<const char*> allowed) {
     if (!given.contains(name)) return std::string(otherwise);
     const Typed& value = given[name]->value;
     bool fits = value.kind == Kind::text && (allowed.size() == 0 || value.text == otherwise);
-    for (const char* candidate : allowed) fits = fits || (value.kind == Kind::text && value.text == candidate);
+    for (const char* candidate : allowed)
+      fits = fits || (value.kind == Kind::text && value.text == candidate);
     if (!fits) {
       std::string list;
-      for (const char* candidate : allowed) list += (list.empty() ? "" : ", ") + ("\"" + std::string(candidate) + "\"");
+      for (const char* candidate : allowed)
+        list += (list.empty() ? "" : ", ") + ("\"" + std::string(candidate) + "\"");
       error("argument-type", given[name]->span,
-            std::string("`") + name + "` of `texture` is a text" + (list.empty() ? "" : ": one of " + list));
+            std::string("`") + name + "` of `texture` is a text" +
+                (list.empty() ? "" : ": one of " + list));
       return std::string("?");
     }
     return value.text;
   };
   if (!given.contains("file")) {
-    error("argument-count", span, "`texture` needs the name of an image file", "texture(\"wood.exr\", u, v)");
+    error("argument-count", span, "`texture` needs the name of an image file",
+          "texture(\"wood.exr\", u, v)");
     return {};
   }
   const std::string file = text("file", "", {});
@@ -128,7 +144,8 @@ Typed Lowering::intrinsic_texture(std::vector<CallArgument>& arguments, const Sp
     }
     const Typed value = to_number(given[name]->value);
     if (value.kind != Kind::number) {
-      error("argument-type", given[name]->span, "a coordinate is a number, this is " + describe(value));
+      error("argument-type", given[name]->span,
+            "a coordinate is a number, this is " + describe(value));
       return {};
     }
     operands.push_back(value.parts.front());
@@ -141,7 +158,8 @@ Typed Lowering::intrinsic_texture(std::vector<CallArgument>& arguments, const Sp
   operands.push_back(width.parts.front());
 
   std::string problem = "images cannot be read here";
-  const int components = host_.texture_components ? host_.texture_components(file, layer, problem) : 0;
+  const int components =
+      host_.texture_components ? host_.texture_components(file, layer, problem) : 0;
   if (components <= 0) {
     error("texture", given["file"]->span, problem);
     return {};
@@ -151,7 +169,8 @@ Typed Lowering::intrinsic_texture(std::vector<CallArgument>& arguments, const Sp
   while (index < module_.externals.size() && module_.externals[index].name != name) ++index;
   if (index == module_.externals.size()) module_.externals.push_back({name, 3, components});
   const std::vector<ir::Type> types(static_cast<std::size_t>(components), ir::Type::f32);
-  const auto results = builder_->emit_multi(ir::Op::external, operands, types, static_cast<std::int32_t>(index));
+  const auto results =
+      builder_->emit_multi(ir::Op::external, operands, types, static_cast<std::int32_t>(index));
   return components == 1 ? number(results.front()) : vector(results);
 }
 
@@ -165,7 +184,8 @@ Typed Lowering::intrinsic_texture_size(const std::vector<CallArgument>& argument
   if (named && host_.texture_size)
     size = host_.texture_size(file.value.text, problem);
   if (size.first > 0)
-    return vector({constant(static_cast<float>(size.first)), constant(static_cast<float>(size.second))});
+    return vector(
+        {constant(static_cast<float>(size.first)), constant(static_cast<float>(size.second))});
   error(named ? "texture" : "argument-type", file.span, problem);
   return {};
 }
@@ -185,21 +205,27 @@ Typed Lowering::slopes(const std::string& name, Typed value) {
   return value;
 }
 
-Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument>& arguments, const Span& span) {
+Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument>& arguments,
+                               const Span& span) {
   if (name == "texture") return intrinsic_texture(arguments, span);
   if (name == "volume") return intrinsic_volume(arguments, span);
   if (is_scene_call(name)) return intrinsic_scene(name, arguments, span);
-  if (name == "min" || name == "max" || name == "any" || name == "all") return intrinsic_fold(name, arguments, span);
+  if (name == "min" || name == "max" || name == "any" || name == "all")
+    return intrinsic_fold(name, arguments, span);
   const auto needs = [&](std::size_t count) {
     if (arguments.size() == count) return true;
-    error("argument-count", span, "`" + name + "` takes " + std::to_string(count) + " argument" +
-                                      (count == 1 ? "" : "s") + ", this gives " + std::to_string(arguments.size()));
+    error("argument-count", span,
+          "`" + name + "` takes " + std::to_string(count) + " argument" + (count == 1 ? "" : "s") +
+              ", this gives " + std::to_string(arguments.size()));
     return false;
   };
   if (name == "texture_size") return needs(1) ? intrinsic_texture_size(arguments) : Typed{};
   const auto refuse = [&](const char* what) {
+    const Typed& given = arguments.front().value;
+    const auto constant = given.kind == Kind::number ? known(given.parts.front()) : std::nullopt;
     error("argument-type", arguments.front().span,
-          "`" + name + "` needs " + what + ", this is " + describe(arguments.front().value));
+          "`" + name + "` needs " + what + ", this is " +
+              (constant ? fmt::format("{}", *constant) : describe(given)));
     return Typed{};
   };
   if (name == "require") {
@@ -234,8 +260,11 @@ Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument
   }
   if (name == "array") {
     if (!needs(1)) return {};
-    const auto capacity = arguments[0].value.kind == Kind::number ? known(arguments[0].value.parts.front()) : std::nullopt;
-    if (!capacity || !(*capacity >= 1 && *capacity <= 1048576)) return refuse("a constant from 1 to 1048576");
+    const auto capacity = arguments[0].value.kind == Kind::number
+                              ? known(arguments[0].value.parts.front())
+                              : std::nullopt;
+    if (!capacity || !(*capacity >= 1 && *capacity <= 1048576))
+      return refuse("a constant from 1 to 1048576");
     return new_array("array", static_cast<std::int32_t>(*capacity));
   }
   if (!needs(1)) return {};
@@ -249,16 +278,19 @@ Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument
   if (name == "isnan" || name == "isfinite") {
     ir::Value result = ir::no_value;
     for (const ir::Value part : value.parts) {
-      const ir::Value here = name == "isnan"
-                                 ? emit(ir::Op::fne, {part, part})
-                                 : emit(ir::Op::flt, {emit(ir::Op::fabs, {part}),
-                                                      constant(std::numeric_limits<float>::infinity())});
-      result = result == ir::no_value ? here : emit(name == "isnan" ? ir::Op::bor : ir::Op::band, {result, here});
+      const ir::Value here =
+          name == "isnan" ? emit(ir::Op::fne, {part, part})
+                          : emit(ir::Op::flt, {emit(ir::Op::fabs, {part}),
+                                               constant(std::numeric_limits<float>::infinity())});
+      result = result == ir::no_value
+                   ? here
+                   : emit(name == "isnan" ? ir::Op::bor : ir::Op::band, {result, here});
     }
     return truth(result);
   }
   if (name == "Dx" || name == "Dy" || name == "filterwidth") return slopes(name, value);
-  if (name == "number") return value.kind == Kind::number ? value : refuse("a number or a truth value");
+  if (name == "number")
+    return value.kind == Kind::number ? value : refuse("a number or a truth value");
   if (name == "vector") return vector(value.parts);
   if (name == "transpose") {
     if (value.kind != Kind::matrix) return refuse("a matrix");
@@ -266,7 +298,8 @@ Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument
     std::swap(result.rows, result.columns);
     for (int r = 0; r < value.rows; ++r)
       for (int c = 0; c < value.columns; ++c)
-        result.parts[static_cast<std::size_t>(c * value.rows + r)] = value.parts[static_cast<std::size_t>(r * value.columns + c)];
+        result.parts[static_cast<std::size_t>(c * value.rows + r)] =
+            value.parts[static_cast<std::size_t>(r * value.columns + c)];
     return result;
   }
   if (name == "identity") {

@@ -1,6 +1,6 @@
 // trace(), radiance() and visible(): rays that a program sends into the scene it is rendered in.
-// They are externals (ir::Op::external) that the host binds; surface/trace_call.h answers them. What
-// trace() gives is a vector of 14 numbers whose parts have names.
+// They are externals (ir::Op::external) that the host binds; surface/trace_call.h answers them.
+// What trace() gives is a vector of 14 numbers whose parts have names.
 #include <array>
 
 #include "lower/lowering.h"
@@ -35,7 +35,8 @@ Typed Lowering::intrinsic_scene(const std::string& name, std::vector<CallArgumen
   const char* const usage = between ? "visible(place, other_place)" : "(origin, direction)";
   if (arguments.size() != 2) {
     error("argument-count", span,
-          "`" + name + "` takes 2 arguments, this gives " + std::to_string(arguments.size()), usage);
+          "`" + name + "` takes 2 arguments, this gives " + std::to_string(arguments.size()),
+          usage);
     return {};
   }
   std::vector<ir::Value> operands;

@@ -13,7 +13,9 @@ std::vector<std::string> functions_defined_in(std::string_view text) {
       std::size_t begin = at + keyword.size();
       while (begin < text.size() && text[begin] == ' ') ++begin;
       std::size_t end = begin;
-      while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) || text[end] == '_')) ++end;
+      while (end < text.size() &&
+             (std::isalnum(static_cast<unsigned char>(text[end])) || text[end] == '_'))
+        ++end;
       names.emplace_back(text.substr(begin, end - begin));
     }
     const std::size_t newline = text.find('\n', at);

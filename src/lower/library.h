@@ -1,4 +1,5 @@
-// The standard library: programs of library/, kept inside the executable and found by the names of their functions.
+// The standard library: programs of library/, kept inside the executable and found by the names of
+// their functions.
 #pragma once
 
 #include <span>
@@ -15,7 +16,8 @@ struct LibraryFile {
 
 std::span<const LibraryFile> library_files();
 
-// The names of the functions that a text defines at its outermost level: lines that start with `function `.
+// The names of the functions that a text defines at its outermost level: lines that start with
+// `function `.
 std::vector<std::string> functions_defined_in(std::string_view text);
 
 }  // namespace pse

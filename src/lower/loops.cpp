@@ -27,7 +27,9 @@ void Lowering::lower_while(const WhileStmt& statement, const Span& span) {
   const bool continues = std::exchange(exits.continues, false);
 
   const Variables outer = variables();
-  const auto set_false = [&](const char* flag) { variables()[flag] = truth(builder_->const_bool(false)); };
+  const auto set_false = [&](const char* flag) {
+    variables()[flag] = truth(builder_->const_bool(false));
+  };
   if (exits.breaks) set_false("%broke");
   if (exits.returns && !variables().contains("%returned")) set_false("%returned");
 
@@ -35,13 +37,15 @@ void Lowering::lower_while(const WhileStmt& statement, const Span& span) {
   loop(
       assigned, statement.body,
       [&]() -> ir::Value {
-        const auto test = [&] { return to_truth(lower(*statement.condition), statement.condition->span); };
+        const auto test = [&] {
+          return to_truth(lower(*statement.condition), statement.condition->span);
+        };
         if (!exits.any()) {
           const Typed condition = test();
           return condition.is_error() ? builder_->const_bool(false) : condition.parts.front();
         }
-        const Typed condition =
-            branch_value(not_left(exits), test, [&] { return truth(builder_->const_bool(false)); }, span);
+        const Typed condition = branch_value(
+            not_left(exits), test, [&] { return truth(builder_->const_bool(false)); }, span);
         return condition.is_error() ? builder_->const_bool(false) : condition.parts.front();
       },
       [&] {
@@ -54,7 +58,8 @@ void Lowering::lower_while(const WhileStmt& statement, const Span& span) {
   // The flags of an enclosing loop come back.
   for (const char* flag : {"%broke", "%continued"}) {
     variables().erase(flag);
-    if (const auto found = outer.find(flag); found != outer.end()) variables()[flag] = found->second;
+    if (const auto found = outer.find(flag); found != outer.end())
+      variables()[flag] = found->second;
   }
 }
 
@@ -69,10 +74,13 @@ void Lowering::counted_loop(const ForStmt& statement, ir::Value count,
   const bool continues = std::exchange(exits.continues, false);
 
   const Variables outer = variables();
-  const auto set_false = [&](const char* flag) { variables()[flag] = truth(builder_->const_bool(false)); };
+  const auto set_false = [&](const char* flag) {
+    variables()[flag] = truth(builder_->const_bool(false));
+  };
   if (exits.breaks) set_false("%broke");
   if (exits.returns && !variables().contains("%returned")) set_false("%returned");
-  variables()["%counter"] = Typed{.kind = Kind::number, .parts = {integer(0)}, .text = {}, .function = {}};
+  variables()["%counter"] =
+      Typed{.kind = Kind::number, .parts = {integer(0)}, .text = {}, .function = {}};
   variables().erase(statement.variable);
 
   ++loop_depth_;
@@ -94,10 +102,11 @@ void Lowering::counted_loop(const ForStmt& statement, ir::Value count,
       span);
   --loop_depth_;
   variables().erase("%counter");
-  for (const std::string& name : {std::string("%counter"), std::string("%broke"), std::string("%continued"),
-                                  statement.variable}) {
+  for (const std::string& name : {std::string("%counter"), std::string("%broke"),
+                                  std::string("%continued"), statement.variable}) {
     variables().erase(name);
-    if (const auto found = outer.find(name); found != outer.end()) variables()[name] = found->second;
+    if (const auto found = outer.find(name); found != outer.end())
+      variables()[name] = found->second;
   }
 }
 
@@ -122,10 +131,12 @@ void Lowering::lower_for(const ForStmt& statement, const Span& span) {
     if (range->step) {
       steps = emit(ir::Op::fdiv, {steps, s});
       if (const auto fixed = known(s); fixed && *fixed == 0)
-        return error("range-step", range->step->span, "the step of a range is 0, so it would never end");
+        return error("range-step", range->step->span,
+                     "the step of a range is 0, so it would never end");
     }
     // The most steps that a float and a 32-bit integer both hold; NaN gives none.
-    const ir::Value whole = emit(ir::Op::ffloor, {emit(ir::Op::fmin, {steps, constant(2147483392.0f)})});
+    const ir::Value whole =
+        emit(ir::Op::ffloor, {emit(ir::Op::fmin, {steps, constant(2147483392.0f)})});
     const ir::Value count = emit(ir::Op::f2i, {emit(ir::Op::fadd, {whole, constant(1)})});
     counted_loop(
         statement, count,
@@ -145,7 +156,8 @@ void Lowering::lower_for(const ForStmt& statement, const Span& span) {
   if (sequence.kind == Kind::array) {
     const ir::Value count = emit(ir::Op::f2i, {array_length(sequence).parts.front()});
     counted_loop(
-        statement, count, [&](ir::Value counter) { return load_element(sequence, counter, span, false); }, span);
+        statement, count,
+        [&](ir::Value counter) { return load_element(sequence, counter, span, false); }, span);
     return;
   }
   if (sequence.kind == Kind::vector || sequence.kind == Kind::matrix) {
@@ -159,7 +171,8 @@ void Lowering::lower_for(const ForStmt& statement, const Span& span) {
     return;
   }
   error("not-a-sequence", statement.sequence->span,
-        "`for` runs over a range, an array or a vector; this is " + describe(sequence), "write `[1 .. n]` to count to n");
+        "`for` runs over a range, an array or a vector; this is " + describe(sequence),
+        "write `[1 .. n]` to count to n");
 }
 
 }  // namespace pse::lower

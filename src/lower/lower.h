@@ -1,5 +1,6 @@
-// tree -> typed IR: type inference by specialisation. A function is lowered into its caller for the types it is called
-// with, so functions can be arguments and need no declarations. See docs/language.md for the rules.
+// tree -> typed IR: type inference by specialisation. A function is lowered into its caller for the
+// types it is called with, so functions can be arguments and need no declarations. See
+// docs/language.md for the rules.
 #pragma once
 
 #include <functional>
@@ -47,10 +48,13 @@ struct ProgramOutput {
 struct LowerHost {
   // The text of module `name` (of `import name`), added to the map; nothing when there is none.
   std::function<std::optional<FileId>(SourceMap&, const std::string& name)> find_module;
-  // The number of components of a stored texture's layer, or an error message. See `texture()` in docs/language.md.
-  std::function<int(const std::string& file, const std::string& layer, std::string& error)> texture_components;
+  // The number of components of a stored texture's layer, or an error message. See `texture()` in
+  // docs/language.md.
+  std::function<int(const std::string& file, const std::string& layer, std::string& error)>
+      texture_components;
   // The same of a stored volume's grid, see `volume()`; an empty name is the file's main grid.
-  std::function<int(const std::string& file, const std::string& grid, std::string& error)> volume_components;
+  std::function<int(const std::string& file, const std::string& grid, std::string& error)>
+      volume_components;
   // The width and height of a stored texture; 0 and a message where there is none.
   std::function<std::pair<int, int>(const std::string& file, std::string& error)> texture_size;
 };
@@ -63,19 +67,22 @@ struct LowerOptions {
 };
 
 struct Lowered {
-  ir::Module module;  // inputs: the stream names read (by component), then the knobs read (rate frame)
+  // Inputs: the stream names read (by component), then the knobs read (rate frame).
+  ir::Module module;
   std::vector<Knob> knobs;  // all of the program's, read or not, in order of appearance
   std::vector<ProgramOutput> outputs;
   std::vector<std::string> reads;  // stream names read
-  std::vector<ir::CallRange> calls;  // the functions of the language that were written into the program
+  // The functions of the language that were written into the program.
+  std::vector<ir::CallRange> calls;
 };
 
 // Errors go to `diagnostics`; the result is meaningful only when there are none.
-Lowered lower_program(SourceMap& sources, const lang::Program& program, const LowerHost& host, const LowerOptions& options,
-              Diagnostics& diagnostics);
+Lowered lower_program(SourceMap& sources, const lang::Program& program, const LowerHost& host,
+                      const LowerOptions& options, Diagnostics& diagnostics);
 
-// After errors of the parser: adds what else is wrong with the statements that it understood, and sorts. Names that
-// nothing is like are left out, since a statement that was not understood may have set them.
+// After errors of the parser: adds what else is wrong with the statements that it understood, and
+// sorts. Names that nothing is like are left out, since a statement that was not understood may
+// have set them.
 void add_later_errors(SourceMap& sources, const lang::Program& program, const LowerHost& host,
                       const LowerOptions& options, Diagnostics& diagnostics);
 

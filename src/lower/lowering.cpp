@@ -1,4 +1,5 @@
-// The top level: definitions first, then knobs, then the statements in order; at the end the outputs.
+// The top level: definitions first, then knobs, then the statements in order; at the end the
+// outputs.
 #include <algorithm>
 
 #include "lower/lowering.h"
@@ -11,17 +12,19 @@ namespace pse::lower {
 
 using namespace lang;
 
-Lowering::Lowering(SourceMap& sources, const LowerHost& host, const LowerOptions& options, Diagnostics& diagnostics)
+Lowering::Lowering(SourceMap& sources, const LowerHost& host, const LowerOptions& options,
+                   Diagnostics& diagnostics)
     : sources_(sources), host_(host), options_(options), diagnostics_(&diagnostics) {
   module_.functions.reserve(BuiltinEmitter::room_for_builtins + 1);
   module_.functions.emplace_back();
   module_.functions.front().name = "main";
 }
 
-// ---- Reports and limits -----------------------------------------------------------------------------------------
+// ---- Reports and limits -------------------------------------------------------------------------
 
-// A function of the library is right: what it cannot do is the fault of what it was called with, and
-// the call is the place. In a function of another module, the program's own call is named beside it.
+// A function of the library is right: what it cannot do is the fault of what it was called with,
+// and the call is the place. In a function of another module, the program's own call is named
+// beside it.
 Blame Lowering::blame(const char* code, const Span& span, std::string message,
                       std::string suggestion) const {
   const auto in_library = [&](const Span& place) { return library_texts_.contains(place.file); };
@@ -31,7 +34,8 @@ Blame Lowering::blame(const char* code, const Span& span, std::string message,
     if (!call || !call->call_span.valid() || !call->definition)
       return {span, std::move(message), std::move(suggestion)};
     std::string head = "`" + call->definition->name + "` cannot be called here: ";
-    const bool by_shape = code != std::string_view("unknown-name") && code != std::string_view("too-large");
+    const bool by_shape =
+        code != std::string_view("unknown-name") && code != std::string_view("too-large");
     if (by_shape && call->arguments && !call->arguments->empty()) {
       head = "`" + call->definition->name + "` cannot be called with ";
       for (std::size_t i = 0; i < call->arguments->size(); ++i)
@@ -44,11 +48,13 @@ Blame Lowering::blame(const char* code, const Span& span, std::string message,
   }
   while (call && call->call_span.file != main_.file) call = call->caller;
   if (call && call->call_span.valid())
-    suggestion += (suggestion.empty() ? "called from " : "; called from ") + sources_.describe(call->call_span);
+    suggestion += (suggestion.empty() ? "called from " : "; called from ") +
+                  sources_.describe(call->call_span);
   return {span, std::move(message), std::move(suggestion)};
 }
 
-void Lowering::error(const char* code, const Span& span, std::string message, std::string suggestion) {
+void Lowering::error(const char* code, const Span& span, std::string message,
+                     std::string suggestion) {
   Blame found = blame(code, span, std::move(message), std::move(suggestion));
   // One wrong call makes one error, however often the library stumbles over it.
   if (!(found.span == span))
@@ -63,7 +69,8 @@ Span Lowering::program_place(const Span& span) const {
   return call && call->call_span.valid() ? call->call_span : span;
 }
 
-void Lowering::warning(const char* code, const Span& span, std::string message, std::string suggestion) {
+void Lowering::warning(const char* code, const Span& span, std::string message,
+                       std::string suggestion) {
   diagnostics_->warning(code, span, std::move(message), std::move(suggestion));
 }
 
@@ -74,13 +81,15 @@ ir::Value Lowering::emit(ir::Op op, std::initializer_list<ir::Value> operands, s
 
 void Lowering::check_size() {
   if (builder_->emitted() <= options_.max_instructions) return;
-  error("too-large", builder_->span(),
-        "the program grows beyond " + std::to_string(options_.max_instructions) + " operations here",
-        "functions are copied into their callers: call large ones from a loop instead of many places");
+  error(
+      "too-large", builder_->span(),
+      "the program grows beyond " + std::to_string(options_.max_instructions) + " operations here",
+      "functions are copied into their callers: call large ones from a loop instead of many "
+      "places");
   throw TooLarge{};
 }
 
-// ---- Modules ----------------------------------------------------------------------------------------------------
+// ---- Modules ------------------------------------------------------------------------------------
 
 void Lowering::read_definitions(const Program& program, ModuleScope& scope) {
   const bool imported = &scope != &main_;
@@ -88,7 +97,8 @@ void Lowering::read_definitions(const Program& program, ModuleScope& scope) {
     if (!statement) continue;
     if (const auto* function = std::get_if<FunctionStmt>(&statement->node)) {
       if (!scope.functions.emplace(function->name, function).second)
-        error("function-twice", function->name_span, "function `" + function->name + "` is defined twice");
+        error("function-twice", function->name_span,
+              "function `" + function->name + "` is defined twice");
       std::set<std::string> parameters;
       for (const Parameter& parameter : function->parameters)
         if (!parameters.insert(parameter.name).second)
@@ -102,7 +112,8 @@ void Lowering::read_definitions(const Program& program, ModuleScope& scope) {
       else
         scope.named_imports[import->alias] = module;
     } else if (const auto* assign = std::get_if<AssignStmt>(&statement->node); assign && imported) {
-      if (const auto* name = std::get_if<NameExpr>(&assign->target->node); name && assign->op == AssignOp::set)
+      if (const auto* name = std::get_if<NameExpr>(&assign->target->node);
+          name && assign->op == AssignOp::set)
         scope.constants[name->name] = assign->value.get();
     }
   }
@@ -136,9 +147,10 @@ ModuleScope* Lowering::load_module(const std::string& name, const Span& span) {
   if (host_.find_module)
     if (const auto file = host_.find_module(sources_, name)) {
       if (in_library)
-        warning("hides-library", span,
-                "this is " + sources_.file(*file).name + ", not the library's module `" + name + "`",
-                "rename the file to import the library's; its functions are found without an import");
+        warning(
+            "hides-library", span,
+            "this is " + sources_.file(*file).name + ", not the library's module `" + name + "`",
+            "rename the file to import the library's; its functions are found without an import");
       imported_.push_back(adopt(*file, name));
       return imported_.back();
     }
@@ -147,7 +159,8 @@ ModuleScope* Lowering::load_module(const std::string& name, const Span& span) {
   for (const LibraryFile& file : library_files()) names.emplace_back(file.name);
   const std::string near = did_you_mean(name, names);
   error("unknown-module", span, "there is no module `" + name + "`",
-        !near.empty() ? near : "a module is a file `" + name + ".pse` beside the program or on PSE_PATH");
+        !near.empty() ? near
+                      : "a module is a file `" + name + ".pse` beside the program or on PSE_PATH");
   modules_[name] = nullptr;
   return nullptr;
 }
@@ -166,7 +179,7 @@ ModuleScope* Lowering::library_module_of(const std::string& name) {
   return adopt_library(file, key);
 }
 
-// ---- The stream and the knobs -----------------------------------------------------------------------------------
+// ---- The stream and the knobs -------------------------------------------------------------------
 
 const StreamName* Lowering::stream_name(const std::string& name) const {
   for (const StreamName& candidate : options_.stream)
@@ -175,23 +188,27 @@ const StreamName* Lowering::stream_name(const std::string& name) const {
 }
 
 std::int32_t Lowering::input_index(const std::string& name, ir::Rate rate, ir::InputSlopes slopes) {
-  const auto [found, fresh] = inputs_.emplace(name, static_cast<std::int32_t>(module_.inputs.size()));
+  const auto [found, fresh] =
+      inputs_.emplace(name, static_cast<std::int32_t>(module_.inputs.size()));
   if (fresh) module_.inputs.push_back({name, rate, slopes});
   return found->second;
 }
 
 Typed Lowering::read_stream(const StreamName& name) {
   if (frame_blocks_ > 0 && name.rate == ir::Rate::sample)
-    warning("varies-in-frame", builder_->span(),
-            "`" + name.name + "` differs from sample to sample, so this is not computed once per frame",
-            "move it out of `if begin_frame`");
+    warning(
+        "varies-in-frame", builder_->span(),
+        "`" + name.name + "` differs from sample to sample, so this is not computed once per frame",
+        "move it out of `if begin_frame`");
   bool read = false;
   for (const std::string& known_name : reads_) read = read || known_name == name.name;
   if (!read) reads_.push_back(name.name);
-  if (name.components == 1) return number(emit(ir::Op::input, {}, input_index(name.name, name.rate, name.slopes)));
+  if (name.components == 1)
+    return number(emit(ir::Op::input, {}, input_index(name.name, name.rate, name.slopes)));
   std::vector<ir::Value> parts;
   for (int c = 0; c < name.components; ++c)
-    parts.push_back(emit(ir::Op::input, {}, input_index(name.name + "." + std::to_string(c), name.rate, name.slopes)));
+    parts.push_back(emit(ir::Op::input, {},
+                         input_index(name.name + "." + std::to_string(c), name.rate, name.slopes)));
   return vector(std::move(parts));
 }
 
@@ -200,7 +217,8 @@ Typed Lowering::read_knob(std::size_t index) {
   if (knob.is_text()) return {.kind = Kind::text, .parts = {}, .text = knob.text, .function = {}};
   std::vector<ir::Value> parts;
   for (std::size_t c = 0; c < knob.value.size(); ++c) {
-    const std::string input = knob.value.size() == 1 ? knob.name : knob.name + "." + std::to_string(c);
+    const std::string input =
+        knob.value.size() == 1 ? knob.name : knob.name + "." + std::to_string(c);
     parts.push_back(emit(ir::Op::input, {}, input_index(input, ir::Rate::frame)));
   }
   if (knob.is_boolean) return truth(emit(ir::Op::fne, {parts.front(), constant(0)}));
@@ -250,7 +268,8 @@ void Lowering::declare_knob(const AssignStmt& assign, const std::string& name, c
 }
 
 void Lowering::read_meta(Knob& knob, const AssignStmt& assign) {
-  const std::vector<std::string> known_names = {"min", "max", "label", "help", "widget", "options", "units", "page"};
+  const std::vector<std::string> known_names = {"min",    "max",     "label", "help",
+                                                "widget", "options", "units", "page"};
   for (const MetaEntry& entry : assign.meta) {
     const auto value = entry.value ? constant_value(*entry.value) : std::nullopt;
     const bool wants_number = entry.name == "min" || entry.name == "max";
@@ -286,7 +305,7 @@ void Lowering::read_meta(Knob& knob, const AssignStmt& assign) {
     error("meta-value", knob.span, "the range of knob `" + knob.name + "` ends before it begins");
 }
 
-// ---- Outputs ----------------------------------------------------------------------------------------------------
+// ---- Outputs ------------------------------------------------------------------------------------
 
 // As many channels as a reader takes (image/reader.h); the compiler's time grows with their square.
 constexpr std::size_t most_outputs = 1024;
@@ -299,14 +318,17 @@ void Lowering::make_outputs(Lowered& result) {
     const auto found = variables().find(name);
     if (found == variables().end()) continue;
     const Typed value = to_number(found->second);
-    const bool is_colour = value.kind == Kind::number || (value.kind == Kind::vector && value.rows <= 4);
+    const bool is_colour =
+        value.kind == Kind::number || (value.kind == Kind::vector && value.rows <= 4);
     const bool fits = name == "color" ? is_colour : name != "alpha" || value.kind == Kind::number;
     if (!fits && !value.is_error())
-      error("output-kind", set_at_top_[name], "`" + name + "` is " + describe(value) + ", which makes no picture",
+      error("output-kind", set_at_top_[name],
+            "`" + name + "` is " + describe(value) + ", which makes no picture",
             value.kind == Kind::function ? "call the function" : "");
     if (!value.is_numeric()) continue;
-    const bool wanted = options_.outputs.empty() ||
-                        std::find(options_.outputs.begin(), options_.outputs.end(), name) != options_.outputs.end();
+    const bool wanted =
+        options_.outputs.empty() ||
+        std::find(options_.outputs.begin(), options_.outputs.end(), name) != options_.outputs.end();
     result.outputs.push_back({name, value.components(), set_at_top_[name]});
     if (!wanted) {
       result.outputs.pop_back();
@@ -345,7 +367,8 @@ Lowered Lowering::run(const Program& program) {
     // Already reported.
   }
 
-  // Module functions that the builtins added are in place; arrays nothing was put into have one component.
+  // Module functions that the builtins added are in place; arrays nothing was put into have one
+  // component.
   for (ir::Array& array : module_.functions.front().arrays)
     if (array.components == 0) array.components = 1;
   result.module = std::move(module_);
@@ -359,14 +382,19 @@ Lowered Lowering::run(const Program& program) {
 
 namespace pse {
 
-Lowered lower_program(SourceMap& sources, const lang::Program& program, const LowerHost& host, const LowerOptions& options,
-              Diagnostics& diagnostics) {
+Lowered lower_program(SourceMap& sources, const lang::Program& program, const LowerHost& host,
+                      const LowerOptions& options, Diagnostics& diagnostics) {
   Diagnostics found;
   Lowered lowered = lower::Lowering(sources, host, options, found).run(program);
 
-  // Of the errors that one call of the library makes, loops may have kept several.
+  // Of the errors that one call of the library makes, loops may have kept several. A name that is
+  // like no other is unknown wherever it is read, and one definition mends all places.
   std::vector<Span> calls;
+  std::set<std::string> unknown;
   for (const Diagnostic& diagnostic : found.all()) {
+    if (diagnostic.code == "unknown-name" && !diagnostic.suggestion.starts_with("did you mean") &&
+        !unknown.insert(diagnostic.message).second)
+      continue;
     if (diagnostic.severity == Severity::error && diagnostic.suggestion.contains("see library/")) {
       if (std::ranges::find(calls, diagnostic.span) != calls.end()) continue;
       calls.push_back(diagnostic.span);
@@ -384,10 +412,23 @@ void add_later_errors(SourceMap& sources, const lang::Program& program, const Lo
                       const LowerOptions& options, Diagnostics& diagnostics) {
   Diagnostics later;
   lower_program(sources, program, host, options, later);
+  // What is found on a line that was not understood, or about what is missing, is a consequence.
+  const std::vector<Diagnostic> earlier = diagnostics.all();
+  const auto line = [&](const Span& span) {
+    return sources.file(span.file).position(span.begin).line;
+  };
+  const auto follows = [&](const Diagnostic& found) {
+    return found.code == "output-kind" || found.code == "no-value" ||
+           std::ranges::any_of(earlier, [&](const Diagnostic& before) {
+             return before.severity == Severity::error && found.span.valid() &&
+                    found.span.file == before.span.file && line(found.span) == line(before.span);
+           });
+  };
   for (const Diagnostic& diagnostic : later.all()) {
+    if (follows(diagnostic)) continue;
     const bool unknown = diagnostic.code == "unknown-name" || diagnostic.code == "unknown-function";
-    if (diagnostic.code == "output-kind") continue;
-    if (diagnostic.severity == Severity::error && (!unknown || diagnostic.suggestion.starts_with("did you mean")))
+    if (diagnostic.severity == Severity::error &&
+        (!unknown || diagnostic.suggestion.starts_with("did you mean")))
       diagnostics.add(diagnostic);
   }
   diagnostics.sort();

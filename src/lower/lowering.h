@@ -49,7 +49,8 @@ struct Blame {
 
 class Lowering {
  public:
-  Lowering(SourceMap& sources, const LowerHost& host, const LowerOptions& options, Diagnostics& diagnostics);
+  Lowering(SourceMap& sources, const LowerHost& host, const LowerOptions& options,
+           Diagnostics& diagnostics);
   Lowered run(const lang::Program& program);
 
  private:
@@ -73,12 +74,14 @@ class Lowering {
   // names.cpp
   Typed lower_name(const std::string& name, const Span& span);
   std::optional<FunctionRef> find_function(const std::string& name, ModuleScope* scope);
-  Typed lower_module_constant(ModuleScope* scope, const std::string& name, const Span& span, bool& found);
+  Typed lower_module_constant(ModuleScope* scope, const std::string& name, const Span& span,
+                              bool& found);
   std::vector<std::string> visible_names() const;
   std::vector<std::string> callable_names() const;
   static std::string foreign_function(const std::string& name);
   static std::string source_of(const std::string& name);
-  std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates) const;
+  std::string did_you_mean(const std::string& name,
+                           const std::vector<std::string>& candidates) const;
 
   // expressions.cpp
   Typed lower(const lang::Expr& expr);
@@ -89,7 +92,8 @@ class Lowering {
   Typed lower_conditional(const lang::ConditionalExpr& conditional, const Span& span);
   Typed lower_index(const lang::IndexExpr& index, const Span& span);
   Typed lower_member(const lang::MemberExpr& member, const Span& span);
-  Typed element_of(const Typed& base, const Typed& index, const Span& span, const std::string& what);
+  Typed element_of(const Typed& base, const Typed& index, const Span& span,
+                   const std::string& what);
 
   std::int32_t constant_table(std::vector<float> entries);
 
@@ -114,24 +118,29 @@ class Lowering {
 
   // calls.cpp
   Typed lower_call(const lang::CallExpr& call, const Span& span);
-  Typed call_function(const FunctionRef& function, std::vector<CallArgument> arguments, const Span& span,
-                      const std::string& name);
-  Typed call_user(const FunctionRef& function, std::vector<CallArgument>& arguments, const Span& span);
-  Typed call_builtin(const std::string& name, std::vector<CallArgument>& arguments, const Span& span);
+  Typed call_function(const FunctionRef& function, std::vector<CallArgument> arguments,
+                      const Span& span, const std::string& name);
+  Typed call_user(const FunctionRef& function, std::vector<CallArgument>& arguments,
+                  const Span& span);
+  Typed call_builtin(const std::string& name, std::vector<CallArgument>& arguments,
+                     const Span& span);
 
   // intrinsics.cpp: builtins that depend on shapes.
   bool is_intrinsic(const std::string& name) const;
   std::vector<std::string> intrinsic_names() const;
-  Typed call_intrinsic(const std::string& name, std::vector<CallArgument>& arguments, const Span& span);
+  Typed call_intrinsic(const std::string& name, std::vector<CallArgument>& arguments,
+                       const Span& span);
   Typed intrinsic_texture(std::vector<CallArgument>& arguments, const Span& span);
   Typed intrinsic_volume(std::vector<CallArgument>& arguments, const Span& span);
   Typed intrinsic_texture_size(const std::vector<CallArgument>& arguments);
   Typed slopes(const std::string& name, Typed value);
-  Typed intrinsic_fold(const std::string& name, std::vector<CallArgument>& arguments, const Span& span);
+  Typed intrinsic_fold(const std::string& name, std::vector<CallArgument>& arguments,
+                       const Span& span);
 
   // intrinsics_scene.cpp: rays into the scene.
   static bool is_scene_call(const std::string& name);
-  Typed intrinsic_scene(const std::string& name, std::vector<CallArgument>& arguments, const Span& span);
+  Typed intrinsic_scene(const std::string& name, std::vector<CallArgument>& arguments,
+                        const Span& span);
   std::optional<Typed> hit_part(const Typed& base, const std::string& name);
 
   // arrays.cpp
@@ -152,33 +161,38 @@ class Lowering {
   void warn_of_constant(const std::string& name, const Span& span);
   void assign_name(const std::string& name, Typed value, const Span& span);
   void assign_index(const lang::AssignStmt& assign, const lang::IndexExpr& index, const Span& span);
-  void assign_member(const lang::AssignStmt& assign, const lang::MemberExpr& member, const Span& span);
-  Typed assigned_value(const lang::AssignStmt& assign, const std::function<Typed()>& current, const Span& span);
+  void assign_member(const lang::AssignStmt& assign, const lang::MemberExpr& member,
+                     const Span& span);
+  Typed assigned_value(const lang::AssignStmt& assign, const std::function<Typed()>& current,
+                       const Span& span);
   void lower_return(const lang::ReturnStmt& statement, const Span& span);
   void set_flag(const char* flag);
   void bind_arrays(const lang::Block& body);
 
   // branches.cpp: what structured control does to variables.
-  void branch(ir::Value condition, const std::function<void()>& if_true, const std::function<void()>& if_false,
-              const Span& span);
+  void branch(ir::Value condition, const std::function<void()>& if_true,
+              const std::function<void()>& if_false, const Span& span);
   Typed branch_value(ir::Value condition, const std::function<Typed()>& if_true,
                      const std::function<Typed()>& if_false, const Span& span);
   void loop(const std::set<std::string>& assigned, const lang::Block& body_block,
-            const std::function<ir::Value()>& condition, const std::function<void()>& body, const Span& span);
+            const std::function<ir::Value()>& condition, const std::function<void()>& body,
+            const Span& span);
   ir::Value flag_value(const char* flag);
   ir::Value not_left(const Exits& exits);  // true while none of these exits has been taken
 
   // loops.cpp
   void lower_while(const lang::WhileStmt& statement, const Span& span);
   void lower_for(const lang::ForStmt& statement, const Span& span);
-  void counted_loop(const lang::ForStmt& statement, ir::Value count, const std::function<Typed(ir::Value)>& element,
-                    const Span& span);
+  void counted_loop(const lang::ForStmt& statement, ir::Value count,
+                    const std::function<Typed(ir::Value)>& element, const Span& span);
 
-  Blame blame(const char* code, const Span& span, std::string message, std::string suggestion) const;
+  Blame blame(const char* code, const Span& span, std::string message,
+              std::string suggestion) const;
   void error(const char* code, const Span& span, std::string message, std::string suggestion = {});
   // The call in the program itself that led to a place in another file.
   Span program_place(const Span& span) const;
-  void warning(const char* code, const Span& span, std::string message, std::string suggestion = {});
+  void warning(const char* code, const Span& span, std::string message,
+               std::string suggestion = {});
   Variables& variables() { return call_->variables; }
   ir::Value emit(ir::Op op, std::initializer_list<ir::Value> operands, std::int32_t imm = 0,
                  std::int32_t component = 0);
@@ -196,7 +210,8 @@ class Lowering {
   std::map<ir::Value, float> constants_;  // values known while lowering
 
   ModuleScope main_;
-  std::map<std::string, std::unique_ptr<ModuleScope>> modules_;  // imported, by name; null while loading or missing
+  // Imported modules, by name; null while loading or missing.
+  std::map<std::string, std::unique_ptr<ModuleScope>> modules_;
   std::vector<ModuleScope*> imported_;                          // in the order of their imports
   std::map<std::string, int> library_index_;                    // function -> library file
   std::set<FileId> library_texts_;

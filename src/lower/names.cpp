@@ -1,4 +1,5 @@
-// What a name means: a variable, a constant, something the stream brings, a function; and what was meant when none.
+// What a name means: a variable, a constant, something the stream brings, a function; and what was
+// meant when none.
 #include "lower/constant.h"
 #include "lower/library.h"
 #include "lower/lowering.h"
@@ -9,16 +10,22 @@ using namespace lang;
 
 Typed Lowering::lower_name(const std::string& name, const Span& span) {
   // The call's own variables, then the program's.
-  if (const auto found = call_->variables.find(name); found != call_->variables.end()) return found->second;
+  if (const auto found = call_->variables.find(name); found != call_->variables.end())
+    return found->second;
   if (call_ != &top_ && call_->scope == &main_)
-    if (const auto found = top_.variables.find(name); found != top_.variables.end()) return found->second;
+    if (const auto found = top_.variables.find(name); found != top_.variables.end())
+      return found->second;
 
   // A file's own function is meant where the stream happens to bring something of its name.
   if (const auto own = call_->scope->functions.find(name); own != call_->scope->functions.end())
-    return {.kind = Kind::function, .parts = {}, .text = {}, .function = {own->second, call_->scope, {}}};
+    return {.kind = Kind::function,
+            .parts = {},
+            .text = {},
+            .function = {own->second, call_->scope, {}}};
   if (const StreamName* stream = stream_name(name)) return read_stream(*stream);
   bool found = false;
-  if (const Typed value = lower_module_constant(call_->scope, name, span, found); found) return value;
+  if (const Typed value = lower_module_constant(call_->scope, name, span, found); found)
+    return value;
   if (const auto value = named_constant(name)) return number(*value);
   if (const auto rgb = named_colour(name))
     return vector({constant((*rgb)[0]), constant((*rgb)[1]), constant((*rgb)[2])});
@@ -28,9 +35,11 @@ Typed Lowering::lower_name(const std::string& name, const Span& span) {
 
   std::string hint;
   for (const StreamName& brought : options_.stream)
-    if (hint.empty() && brought.name.ends_with("." + name)) hint = "an image brings `" + brought.name + "`";
+    if (hint.empty() && brought.name.ends_with("." + name))
+      hint = "an image brings `" + brought.name + "`";
   if (hint.empty()) hint = source_of(name);
-  if (hint.empty() && ever_set_at_top_.contains(name)) hint = "it is set further down; set it before it is read";
+  if (hint.empty() && ever_set_at_top_.contains(name))
+    hint = "it is set further down; set it before it is read";
   if (hint.empty()) hint = did_you_mean(name, visible_names());
   if (hint.empty()) {
     std::string names;
@@ -40,7 +49,8 @@ Typed Lowering::lower_name(const std::string& name, const Span& span) {
     }
     if (!names.empty()) hint = "the stream brings " + names;
   }
-  error("unknown-name", span, "`" + name + "` is not set here, and the stream does not bring it", hint);
+  error("unknown-name", span, "`" + name + "` is not set here, and the stream does not bring it",
+        hint);
   return {};
 }
 
@@ -60,7 +70,8 @@ std::optional<FunctionRef> Lowering::find_function(const std::string& name, Modu
   return {};
 }
 
-Typed Lowering::lower_module_constant(ModuleScope* scope, const std::string& name, const Span& span, bool& found) {
+Typed Lowering::lower_module_constant(ModuleScope* scope, const std::string& name, const Span& span,
+                                      bool& found) {
   const auto in = [&](ModuleScope* module) -> const Expr* {
     const auto constant = module->constants.find(name);
     return constant == module->constants.end() ? nullptr : constant->second;
@@ -74,7 +85,8 @@ Typed Lowering::lower_module_constant(ModuleScope* scope, const std::string& nam
   }
   if (!value) return {};
   found = true;
-  if (const auto knob = home->knobs.find(name); knob != home->knobs.end()) return read_knob(knob->second);
+  if (const auto knob = home->knobs.find(name); knob != home->knobs.end())
+    return read_knob(knob->second);
 
   // A module's constants are computed where they are read, in the module's own scope.
   for (const Call* call = call_; call; call = call->caller)
@@ -124,19 +136,32 @@ std::vector<std::string> Lowering::callable_names() const {
 // What functions of other languages are called here.
 std::string Lowering::foreign_function(const std::string& name) {
   constexpr std::pair<const char*, const char*> foreign[] = {
-      {"vec2", "write a vector as `[a b]`"},    {"vec3", "write a vector as `[a b c]`"},
-      {"vec4", "write a vector as `[a b c d]`"}, {"float2", "write a vector as `[a b]`"},
-      {"float3", "write a vector as `[a b c]`"}, {"float4", "write a vector as `[a b c d]`"},
-      {"rgb", "write a colour as `[r g b]`"},    {"rgba", "write a colour as `[r g b a]`"},
-      {"vector", "write a vector as `[a b c]`"}, {"fabs", "write `abs`"},
-      {"mod", "write `a % b`"},                  {"fmod", "write `a % b`"},
-      {"frac", "write `fract`"},                 {"fit", "write `remap(t, a0, a1, b0, b1)`"},
-      {"inversesqrt", "write `1 / sqrt(x)`"},    {"rsqrt", "write `1 / sqrt(x)`"},
-      {"rand", "write `hash(...)`"},             {"random", "write `hash(...)`"},
-      {"texture2D", "write `texture(file, u, v)`"}, {"float", "leave it out: all numbers are floats"},
-      {"int", "write `floor` or `trunc`"},       {"mag", "write `norm` or `length`"},
-      {"sqr", "write `x ^ 2`"},                  {"len", "write `count`"},
-      {"size", "write `count`"},                 {"print", "set a name: it becomes a layer of the picture"},
+      {"vec2", "write a vector as `[a b]`"},
+      {"vec3", "write a vector as `[a b c]`"},
+      {"vec4", "write a vector as `[a b c d]`"},
+      {"float2", "write a vector as `[a b]`"},
+      {"float3", "write a vector as `[a b c]`"},
+      {"float4", "write a vector as `[a b c d]`"},
+      {"rgb", "write a colour as `[r g b]`"},
+      {"rgba", "write a colour as `[r g b a]`"},
+      {"vector", "write a vector as `[a b c]`"},
+      {"fabs", "write `abs`"},
+      {"mod", "write `a % b`"},
+      {"fmod", "write `a % b`"},
+      {"frac", "write `fract`"},
+      {"fit", "write `remap(t, a0, a1, b0, b1)`"},
+      {"inversesqrt", "write `1 / sqrt(x)`"},
+      {"rsqrt", "write `1 / sqrt(x)`"},
+      {"rand", "write `hash(...)`"},
+      {"random", "write `hash(...)`"},
+      {"texture2D", "write `texture(file, u, v)`"},
+      {"float", "leave it out: all numbers are floats"},
+      {"int", "write `floor` or `trunc`"},
+      {"mag", "write `norm` or `length`"},
+      {"sqr", "write `x ^ 2`"},
+      {"len", "write `count`"},
+      {"size", "write `count`"},
+      {"print", "set a name: it becomes a layer of the picture"},
       {"printf", "set a name: it becomes a layer of the picture"},
   };
   for (const auto& [theirs, ours] : foreign)
@@ -146,8 +171,8 @@ std::string Lowering::foreign_function(const std::string& name) {
 
 // Which source of samples brings a name that this one lacks.
 std::string Lowering::source_of(const std::string& name) {
-  for (const char* of_surfaces : {"normal", "place", "uv", "id", "depth", "view", "hit", "backface", "flat_normal",
-                                  "light_direction", "light_color"})
+  for (const char* of_surfaces : {"normal", "place", "uv", "id", "depth", "view", "hit", "backface",
+                                  "flat_normal", "light_direction", "light_color"})
     if (name == of_surfaces)
       return "visible surfaces bring `" + name + "`: render with --on sphere, or a scene";
   for (const char* of_images : {"color", "alpha", "Z"})
@@ -156,7 +181,8 @@ std::string Lowering::source_of(const std::string& name) {
   return {};
 }
 
-std::string Lowering::did_you_mean(const std::string& name, const std::vector<std::string>& candidates) const {
+std::string Lowering::did_you_mean(const std::string& name,
+                                   const std::vector<std::string>& candidates) const {
   const std::string nearest = nearest_name(name, candidates);
   return nearest.empty() ? "" : "did you mean `" + nearest + "`?";
 }

@@ -21,7 +21,8 @@ std::string root_name(const Expr& target) {
   return {};
 }
 
-// Calls `visit` on every statement of the block, nested ones included, functions and actions excluded.
+// Calls `visit` on every statement of the block, nested ones included, functions and actions
+// excluded.
 void walk(const Block& block, const std::function<void(const Stmt&)>& visit) {
   for (const StmtPtr& statement : block) {
     if (!statement) continue;
@@ -43,24 +44,27 @@ int mentions(const ExprPtr& expr, const std::string& name) {
     return sum;
   };
   return std::visit(
-      Overload{[&](const NameExpr& e) { return e.name == name ? 1 : 0; },
-               [&](const VectorExpr& e) { return all(e.elements); },
-               [&](const TupleExpr& e) { return all(e.elements); },
-               [&](const RangeExpr& e) {
-                 return mentions(e.first, name) + mentions(e.last, name) + mentions(e.step, name);
-               },
-               [&](const UnaryExpr& e) { return mentions(e.operand, name); },
-               [&](const BinaryExpr& e) { return mentions(e.left, name) + mentions(e.right, name); },
-               [&](const ConditionalExpr& e) {
-                 return mentions(e.condition, name) + mentions(e.if_true, name) + mentions(e.if_false, name);
-               },
-               [&](const CallExpr& e) {
-                 int sum = mentions(e.callee, name);
-                 for (const Argument& argument : e.arguments) sum += mentions(argument.value, name);
-                 return sum;
-               },
-               [&](const IndexExpr& e) { return mentions(e.base, name) + all(e.indices); },
-               [&](const MemberExpr& e) { return mentions(e.base, name); }, [](const auto&) { return 0; }},
+      Overload{
+          [&](const NameExpr& e) { return e.name == name ? 1 : 0; },
+          [&](const VectorExpr& e) { return all(e.elements); },
+          [&](const TupleExpr& e) { return all(e.elements); },
+          [&](const RangeExpr& e) {
+            return mentions(e.first, name) + mentions(e.last, name) + mentions(e.step, name);
+          },
+          [&](const UnaryExpr& e) { return mentions(e.operand, name); },
+          [&](const BinaryExpr& e) { return mentions(e.left, name) + mentions(e.right, name); },
+          [&](const ConditionalExpr& e) {
+            return mentions(e.condition, name) + mentions(e.if_true, name) +
+                   mentions(e.if_false, name);
+          },
+          [&](const CallExpr& e) {
+            int sum = mentions(e.callee, name);
+            for (const Argument& argument : e.arguments) sum += mentions(argument.value, name);
+            return sum;
+          },
+          [&](const IndexExpr& e) { return mentions(e.base, name) + all(e.indices); },
+          [&](const MemberExpr& e) { return mentions(e.base, name); },
+          [](const auto&) { return 0; }},
       expr->node);
 }
 
@@ -97,39 +101,40 @@ std::set<std::string> array_candidates(const Block& block) {
 int count_mentions(const Block& block, const std::string& name) {
   int sum = 0;
   walk(block, [&](const Stmt& statement) {
-    std::visit(Overload{[&](const AssignStmt& s) { sum += mentions(s.target, name) + mentions(s.value, name); },
-                        [&](const ExprStmt& s) { sum += mentions(s.value, name); },
-                        [&](const IfStmt& s) {
-                          for (const IfBranch& branch : s.branches) sum += mentions(branch.condition, name);
-                        },
-                        [&](const WhileStmt& s) { sum += mentions(s.condition, name); },
-                        [&](const ForStmt& s) {
-                          sum += mentions(s.sequence, name);
-                        },
-                        [&](const ReturnStmt& s) { sum += mentions(s.value, name); }, [](const auto&) {}},
-               statement.node);
+    std::visit(
+        Overload{
+            [&](const AssignStmt& s) { sum += mentions(s.target, name) + mentions(s.value, name); },
+            [&](const ExprStmt& s) { sum += mentions(s.value, name); },
+            [&](const IfStmt& s) {
+              for (const IfBranch& branch : s.branches) sum += mentions(branch.condition, name);
+            },
+            [&](const WhileStmt& s) { sum += mentions(s.condition, name); },
+            [&](const ForStmt& s) { sum += mentions(s.sequence, name); },
+            [&](const ReturnStmt& s) { sum += mentions(s.value, name); }, [](const auto&) {}},
+        statement.node);
   });
   return sum;
 }
 
 Exits exits_of(const Stmt& statement) {
-  return std::visit(Overload{[](const ReturnStmt&) { return Exits{.returns = true}; },
-                             [](const BreakStmt&) { return Exits{.breaks = true}; },
-                             [](const ContinueStmt&) { return Exits{.continues = true}; },
-                             [](const IfStmt& s) {
-                               Exits exits;
-                               for (const IfBranch& branch : s.branches) {
-                                 const Exits inner = exits_of(branch.body);
-                                 exits.returns |= inner.returns;
-                                 exits.breaks |= inner.breaks;
-                                 exits.continues |= inner.continues;
-                               }
-                               return exits;
-                             },
-                             [](const WhileStmt& s) { return Exits{.returns = exits_of(s.body).returns}; },
-                             [](const ForStmt& s) { return Exits{.returns = exits_of(s.body).returns}; },
-                             [](const auto&) { return Exits{}; }},
-                    statement.node);
+  return std::visit(
+      Overload{[](const ReturnStmt&) { return Exits{.returns = true}; },
+               [](const BreakStmt&) { return Exits{.breaks = true}; },
+               [](const ContinueStmt&) { return Exits{.continues = true}; },
+               [](const IfStmt& s) {
+                 Exits exits;
+                 for (const IfBranch& branch : s.branches) {
+                   const Exits inner = exits_of(branch.body);
+                   exits.returns |= inner.returns;
+                   exits.breaks |= inner.breaks;
+                   exits.continues |= inner.continues;
+                 }
+                 return exits;
+               },
+               [](const WhileStmt& s) { return Exits{.returns = exits_of(s.body).returns}; },
+               [](const ForStmt& s) { return Exits{.returns = exits_of(s.body).returns}; },
+               [](const auto&) { return Exits{}; }},
+      statement.node);
 }
 
 Exits exits_of(const Block& block) {

@@ -8,7 +8,8 @@
 
 namespace pse::lower {
 
-// Names that the block assigns (`x = `, `x[i] = `, `x.y = `), nested blocks included, functions excluded.
+// Names that the block assigns (`x = `, `x[i] = `, `x.y = `), nested blocks included, functions
+// excluded.
 void collect_assigned(const lang::Block& block, std::set<std::string>& names);
 
 // Names that are only ever assigned by index: they become arrays where nothing else binds them.
@@ -17,7 +18,8 @@ std::set<std::string> array_candidates(const lang::Block& block);
 // How many times the block mentions `name` in an expression or as a target.
 int count_mentions(const lang::Block& block, const std::string& name);
 
-// Which ways of leaving early occur in a statement; `break` and `continue` only as far as they leave the statement.
+// Which ways of leaving early occur in a statement; `break` and `continue` only as far as they
+// leave the statement.
 struct Exits {
   bool returns = false, breaks = false, continues = false;
   bool any() const { return returns || breaks || continues; }

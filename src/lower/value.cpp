@@ -8,7 +8,8 @@ bool same_shape(const Typed& a, const Typed& b) {
   if (a.kind == Kind::text) return a.text == b.text;
   if (a.kind == Kind::array) return a.array == b.array;
   if (a.kind == Kind::function)
-    return a.function.definition == b.function.definition && a.function.builtin == b.function.builtin;
+    return a.function.definition == b.function.definition &&
+           a.function.builtin == b.function.builtin;
   return true;
 }
 

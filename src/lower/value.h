@@ -34,7 +34,8 @@ struct Typed {
 
   bool is_error() const { return kind == Kind::error; }
   bool is_numeric() const {
-    return kind == Kind::number || kind == Kind::boolean || kind == Kind::vector || kind == Kind::matrix;
+    return kind == Kind::number || kind == Kind::boolean || kind == Kind::vector ||
+           kind == Kind::matrix;
   }
   int components() const { return static_cast<int>(parts.size()); }
 };
@@ -43,7 +44,8 @@ bool same_shape(const Typed& a, const Typed& b);
 // "a number", "a vector of 3", "a 2x2 matrix", ... for messages.
 std::string describe(const Typed& value);
 
-// The variables of one function call (or of the top level), by name. Names that start with `%` are the lowering's own.
+// The variables of one function call (or of the top level), by name. Names that start with `%` are
+// the lowering's own.
 using Variables = std::map<std::string, Typed>;
 
 // The names that one file defines.
@@ -52,7 +54,8 @@ struct ModuleScope {
   std::string name;
   std::unique_ptr<lang::Program> program;  // null for the main program, which its caller owns
   std::map<std::string, const lang::FunctionStmt*> functions;
-  std::map<std::string, const lang::Expr*> constants;  // top-level `name = expression` of imported files
+  // Top-level `name = expression` of imported files.
+  std::map<std::string, const lang::Expr*> constants;
   std::map<std::string, std::size_t> knobs;            // the constants that are knobs: their places
   std::vector<ModuleScope*> open_imports;              // `import m`
   std::map<std::string, ModuleScope*> named_imports;   // `import m as k`

@@ -1,5 +1,6 @@
-// Random numbers without memory: the same arguments give the same number, whatever else differs. What programs call to
-// scatter stars, place waves and grain film; the lattice noises have hashes of their own.
+// Random numbers without memory: the same arguments give the same number, whatever else differs.
+// What programs call to scatter stars, place waves and grain film; the lattice noises have hashes
+// of their own.
 #pragma once
 
 #include <span>
@@ -8,8 +9,8 @@
 
 namespace pse::num {
 
-// A number in [0, 1), a multiple of 2^-24, that depends on every bit of every argument and on their order. -0 counts as
-// 0, and every NaN as the same.
+// A number in [0, 1), a multiple of 2^-24, that depends on every bit of every argument and on their
+// order. -0 counts as 0, and every NaN as the same.
 template <class F>
 F random_of(std::span<const F> arguments) {
   using I = IntOf<F>;

@@ -32,9 +32,11 @@ SplitModule run_pipeline(ir::Module module, const PipelineOptions& options) {
   if (options.optimize) {
     // What it calls. With slopes in between, the copies of a function are no longer alike.
     InlineOptions inlining;
-    const std::vector<ir::CallRange> calls = has_slopes ? std::vector<ir::CallRange>{} : options.calls;
+    const std::vector<ir::CallRange> calls =
+        has_slopes ? std::vector<ir::CallRange>{} : options.calls;
     run(
-        "outline", [&](ir::Module& m) { inlining.first_kept = outline(m, calls, options.outline); }, module);
+        "outline", [&](ir::Module& m) { inlining.first_kept = outline(m, calls, options.outline); },
+        module);
     run(
         "inline", [&](ir::Module& m) { inline_calls(m, inlining); }, module);
     // Twice: selects made from ifs, and loops that fell away, show new constants.

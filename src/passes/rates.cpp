@@ -58,8 +58,8 @@ class RateAssigner {
     const Instruction* in;
     std::uint32_t parent;
     bool of_sample = false;  // ifs and loops: their regions run differently from sample to sample
-    std::vector<std::uint32_t>
-        inner;  // ifs and loops: those within that must know, and writes of arrays
+    // Ifs and loops: those within that must know, and writes of arrays.
+    std::vector<std::uint32_t> inner;
   };
 
   void collect(const Region& region, std::uint32_t parent) {
@@ -117,8 +117,8 @@ class RateAssigner {
     for (const Value operand : in.operands) highest = std::max(highest, rate(operand));
     const auto imm = static_cast<std::size_t>(in.imm);
     if (in.op == Op::input) highest = module_.inputs[imm].rate;
-    // Until passes/slopes has put the derivative in its place: what goes by the pixel's width alone,
-    // such as how many octaves are summed, is no edge of the picture.
+    // Until passes/slopes has put the derivative in its place: what goes by the pixel's width
+    // alone, such as how many octaves are summed, is no edge of the picture.
     if (in.op == Op::slope) highest = std::min(highest, Rate::frame);
     // What the host brings may be another thing in another frame, and so may what is in memory.
     const bool asks = in.op == Op::external || (in.op == Op::call && asks_external_[imm]);

@@ -91,7 +91,8 @@ double coordinate_at(const ImagePlane& plane, Coordinate which, double px, doubl
 // What an input holds at a place in pixels of the whole picture.
 double input_at(const ImagePlane& plane, const PlaneInput& input, double px, double py) {
   if (input.part == Part::value) return coordinate_at(plane, input.coordinate, px, py);
-  const double dx = input.part == Part::slope_x ? 0.5 : 0, dy = input.part == Part::slope_y ? 0.5 : 0;
+  const double dx = input.part == Part::slope_x ? 0.5 : 0,
+               dy = input.part == Part::slope_y ? 0.5 : 0;
   return coordinate_at(plane, input.coordinate, px + dx, py + dy) -
          coordinate_at(plane, input.coordinate, px - dx, py - dy);
 }
@@ -163,7 +164,8 @@ class PlaneSamples : public SampleSource {
       };
       // The usual ones in loops of their own.
       const double w = plane_.width, h = plane_.height;
-      switch (plane_.transform || input.part != Part::value ? Coordinate::point_z : input.coordinate) {
+      switch (plane_.transform || input.part != Part::value ? Coordinate::point_z
+                                                            : input.coordinate) {
         case Coordinate::u:
           each([&](std::size_t i) { return x[i] / w; });
           break;

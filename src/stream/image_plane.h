@@ -35,8 +35,9 @@ struct ImagePlane {
 
 // x y u v point px py per sample; frame time fps width height aspect pixelsize pixel_freq seed
 // begin_frame per frame. Where a prepass found matter on a pixel's ray, `prepass.near` and
-// `prepass.far` (here: everywhere), and while it looks, `prepass.step` (here: 0); see app/prepass.h.
-// x y u v point px py have slopes: those of the frame unless the transform is projective.
+// `prepass.far` (here: everywhere), and while it looks, `prepass.step` (here: 0); see
+// app/prepass.h. x y u v point px py have slopes: those of the frame unless the transform is
+// projective.
 std::vector<StreamName> image_plane_names(const std::optional<PlaneTransform>& transform = {});
 
 // Sets the uniforms of the module's frame-rate inputs that the plane brings; leaves the others

@@ -1,4 +1,5 @@
-// The compiler from end to end: text -> tree -> IR -> passes -> kernel. The table of contents of a compilation.
+// The compiler from end to end: text -> tree -> IR -> passes -> kernel. The table of contents of a
+// compilation.
 #include "stream/program.h"
 
 #include <chrono>

@@ -1,4 +1,5 @@
-// From text to something that runs: the whole compiler behind one call, and what a host needs to know of the result.
+// From text to something that runs: the whole compiler behind one call, and what a host needs to
+// know of the result.
 #pragma once
 
 #include <expected>
@@ -42,8 +43,8 @@ struct Program {
 };
 
 // Compiles file `file` of `sources`. Null after errors, which are in `diagnostics`.
-std::shared_ptr<const Program> compile(SourceMap& sources, FileId file, const LowerHost& host, const CompileOptions& options,
-                                       Diagnostics& diagnostics);
+std::shared_ptr<const Program> compile(SourceMap& sources, FileId file, const LowerHost& host,
+                                       const CompileOptions& options, Diagnostics& diagnostics);
 
 // The first half of it: text to the IR as the lowering leaves it.
 struct CompiledFront {

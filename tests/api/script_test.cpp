@@ -7,9 +7,9 @@ namespace pse {
 namespace {
 
 TEST(Script, RunsOnTheCallersArrays) {
-  auto script = Script::compile("Gain = 2\ncolor = Gain * p + offset", {.inputs = {{"p", 2}, {"offset", 1, true}},
-                                                                        .module_path = {},
-                                                                        .cache_folder = {}});
+  auto script = Script::compile(
+      "Gain = 2\ncolor = Gain * p + offset",
+      {.inputs = {{"p", 2}, {"offset", 1, true}}, .module_path = {}, .cache_folder = {}});
   ASSERT_TRUE(script) << script.error();
   ASSERT_EQ(script->outputs().size(), 1u);
   EXPECT_EQ(script->outputs()[0].components, 2);
@@ -42,7 +42,8 @@ TEST(Script, SaysWhatIsWrong) {
   ASSERT_FALSE(broken);
   EXPECT_NE(broken.error().find("<text>:1:5"), std::string::npos) << broken.error();
 
-  auto script = Script::compile("v = [1 2 3]\na = v[k]", {.inputs = {{"k"}}, .module_path = {}, .cache_folder = {}});
+  auto script = Script::compile("v = [1 2 3]\na = v[k]",
+                                {.inputs = {{"k"}}, .module_path = {}, .cache_folder = {}});
   ASSERT_TRUE(script) << script.error();
   const float four = 4;
   float a = 0;

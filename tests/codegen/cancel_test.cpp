@@ -1,5 +1,5 @@
-// How a run is stopped, without a clock: nothing begins any more once the flag is set, whether it is
-// the run's own or that of the run around it, and nobody waits for LLVM.
+// How a run is stopped, without a clock: nothing begins any more once the flag is set, whether it
+// is the run's own or that of the run around it, and nobody waits for LLVM.
 #include <future>
 #include <thread>
 

@@ -62,8 +62,8 @@ struct TestProgram {
   void output_bool(ir::Value value) {
     output(build.emit(ir::Op::select, {value, build.const_f32(1), build.const_f32(0)}));
   }
-  // A loop of `turns` turns that carries numbers, beginning with `start`; `turn` makes the next ones
-  // of them. The result is what the last turn leaves.
+  // A loop of `turns` turns that carries numbers, beginning with `start`; `turn` makes the next
+  // ones of them. The result is what the last turn leaves.
   using Carried = std::vector<ir::Value>;
   Carried counted_loop(ir::Value turns, const Carried& start,
                        const std::function<Carried(const Carried&)>& turn) {

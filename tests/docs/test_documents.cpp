@@ -1,4 +1,5 @@
-// Every program in the documents is run: the blocks marked `pse` of README.md and docs/*.md are held to their comments.
+// Every program in the documents is run: the blocks marked `pse` of README.md and docs/*.md are
+// held to their comments.
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -51,7 +52,8 @@ std::vector<Block> all_blocks() {
   const std::filesystem::path root = PSE_SOURCE_DIR;
   std::vector<std::string> documents = {"README.md"};
   for (const auto& entry : std::filesystem::directory_iterator(root / "docs"))
-    if (entry.path().extension() == ".md") documents.push_back("docs/" + entry.path().filename().string());
+    if (entry.path().extension() == ".md")
+      documents.push_back("docs/" + entry.path().filename().string());
   std::sort(documents.begin(), documents.end());
   std::vector<Block> blocks;
   for (const std::string& document : documents)

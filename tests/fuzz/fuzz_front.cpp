@@ -1,6 +1,6 @@
-// libFuzzer: any bytes as a program. The front end and the lowering must refuse or accept them without
-// a crash or a hang; what parses must format to a text that parses, and formatting twice must change
-// nothing more.
+// libFuzzer: any bytes as a program. The front end and the lowering must refuse or accept them
+// without a crash or a hang; what parses must format to a text that parses, and formatting twice
+// must change nothing more.
 #include <cstdint>
 #include <cstdlib>
 
@@ -23,7 +23,8 @@ void parse(Parsed& parsed, std::string text) {
 // Lowers what was understood, errors or not, as the image plane would bring its names.
 void lower(Parsed& parsed) {
   pse::LowerOptions options;
-  options.stream = {{"x"}, {"y"}, {"point", 3}, {"fg.color", 3}, {"frame", 1, pse::ir::Rate::frame}};
+  options.stream = {
+      {"x"}, {"y"}, {"point", 3}, {"fg.color", 3}, {"frame", 1, pse::ir::Rate::frame}};
   options.max_instructions = 20'000;
   pse::Diagnostics diagnostics;
   pse::lower_program(parsed.sources, parsed.program, pse::LowerHost{}, options, diagnostics);

@@ -1,4 +1,5 @@
-// Bytes of pipes: all of them, in their order, in memory or on disk; and what is no source of bytes.
+// Bytes of pipes: all of them, in their order, in memory or on disk; and what is no source of
+// bytes.
 #include <sys/stat.h>
 
 #include <thread>
@@ -14,7 +15,8 @@ using test::Folder;
 unsigned char byte_at(std::size_t i) { return static_cast<unsigned char>(i * 7 + i / 4096); }
 
 TEST(Bytes, APipeOfAnySizeIsReadWhole) {
-  for (const std::size_t size : {std::size_t{0}, std::size_t{100}, (std::size_t{32} << 20) + 12345}) {
+  for (const std::size_t size :
+       {std::size_t{0}, std::size_t{100}, (std::size_t{32} << 20) + 12345}) {
     Folder folder;
     const std::string fifo = folder / "pipe";
     ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);

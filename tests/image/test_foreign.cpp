@@ -87,8 +87,8 @@ TEST(Foreign, DamageIsSaid) {
   }
 }
 
-// An SGI file of 4 x 1 pixels whose run of pixels is longer than its row: OpenImageIO's reader ends the
-// process it is in.
+// An SGI file of 4 x 1 pixels whose run of pixels is longer than its row: OpenImageIO's reader ends
+// the process it is in.
 TEST(Foreign, AReaderThatBreaksDownIsSaid) {
   PSE_NEEDS_MODULE();
   Folder folder;

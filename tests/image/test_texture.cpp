@@ -1,6 +1,8 @@
 // Lookup against answers derived by hand.
 #include <bit>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <thread>
 
@@ -195,6 +197,120 @@ TEST(TextureCache, OneLoadForManyThreads) {
   }
   for (const Texture* texture : seen) EXPECT_EQ(texture, seen[0]);
   EXPECT_NE(seen[0], nullptr);
+}
+
+// ---- Large textures, in tiles on the disk ----
+
+// Noise of all magnitudes, infinity included; the frame reaches beyond the data on one side.
+Image scattered(int width, int height) {
+  Image image =
+      numbered({0, 0, width, height}, {0, 2, width - 3, height},
+               {{"R", PixelType::float32}, {"G", PixelType::float32}, {"B", PixelType::float32}});
+  std::uint32_t state = 1;
+  for (auto& plane : image.planes)
+    for (float& value : plane) {
+      state = state * 1664525u + 1013904223u;
+      value = std::ldexp(static_cast<float>(state >> 8), static_cast<int>(state % 40) - 40);
+    }
+  image.planes[1][5000] = std::numeric_limits<float>::infinity();
+  return image;
+}
+
+constexpr TextureMemory all_to_disk{.whole = 0, .tiles = 0, .small = 0};
+
+std::vector<std::uint32_t> looked_up(const Texture& texture, Filter filter, Wrap wrap) {
+  std::vector<std::uint32_t> bits;
+  std::array<float, 3> value{};
+  for (int i = 0; i < 4000; ++i) {
+    const auto t = static_cast<float>(i);
+    texture.look_up(std::sin(t) * 3, std::cos(t * 7) * 3, t / 3000, filter, wrap, value.data());
+    for (const float one : value) bits.push_back(std::bit_cast<std::uint32_t>(one));
+  }
+  return bits;
+}
+
+TEST(LargeTexture, HasTheBitsOfOneInMemory) {
+  Folder folder;
+  for (const auto& [width, height] : {std::pair(200, 150), std::pair(64, 128), std::pair(65, 3)}) {
+    const std::string file = folder / (std::to_string(width) + ".exr");
+    Image image = scattered(std::max(width, 100), std::max(height, 60));
+    image.spec.display = {0, 0, width, height};
+    ASSERT_TRUE(write_image(file, image));
+    TextureCache in_memory, on_disk({}, {}, all_to_disk);
+    const auto one = in_memory.load(file, "color"), other = on_disk.load(file, "color");
+    ASSERT_TRUE(one && other) << message_of(other);
+    EXPECT_TRUE((*one)->in_memory());
+    EXPECT_FALSE((*other)->in_memory());
+    EXPECT_EQ((*other)->width(), width);
+    for (const Filter filter : {Filter::nearest, Filter::linear, Filter::cubic, Filter::mipmap}) {
+      ASSERT_TRUE((*other)->prepare(filter));
+      for (const Wrap wrap : {Wrap::repeat, Wrap::clamp, Wrap::mirror, Wrap::black})
+        EXPECT_EQ(looked_up(**other, filter, wrap), looked_up(**one, filter, wrap))
+            << width << " " << static_cast<int>(filter) << " " << static_cast<int>(wrap);
+    }
+  }
+}
+
+TEST(LargeTexture, ManyThreadsSeeTheSame) {
+  Folder folder;
+  ASSERT_TRUE(write_image(folder / "t.exr", scattered(300, 200)));
+  TextureCache cache({}, {}, all_to_disk);
+  const auto texture = cache.load(folder / "t.exr", "color");
+  ASSERT_TRUE(texture);
+  const auto alone = looked_up(**texture, Filter::cubic, Wrap::mirror);
+  std::vector<std::jthread> threads;
+  for (int i = 0; i < 4; ++i)
+    threads.emplace_back(
+        [&] { EXPECT_EQ(looked_up(**texture, Filter::cubic, Wrap::mirror), alone); });
+}
+
+// Textures stay in memory until it is used up; small ones always do.
+TEST(LargeTexture, GoesToTheDiskWhereMemoryIsUsedUp) {
+  Folder folder;
+  for (const char* name : {"a.exr", "b.exr"})
+    ASSERT_TRUE(write_image(folder / name, scattered(100, 100)));
+  ASSERT_TRUE(write_image(folder / "small.exr", scattered(80, 70)));
+  // 100 x 100 x 3 floats and a third more for the smaller sizes are 160,000 bytes.
+  TextureCache cache({}, {}, {.whole = 200000, .tiles = 1 << 20, .small = 100000});
+  EXPECT_TRUE((*cache.load(folder / "a.exr", "color"))->in_memory());
+  EXPECT_FALSE((*cache.load(folder / "b.exr", "color"))->in_memory());
+  EXPECT_TRUE((*cache.load(folder / "small.exr", "color"))->in_memory());
+}
+
+TEST(TileCache, ForgetsWhatWasUsedLongestAgo) {
+  const auto tile = [](float value) {
+    return std::make_shared<const std::vector<float>>(256, value);  // 1 KiB
+  };
+  TileCache cache(16 * 2048);  // two tiles in each of 16 parts
+  for (std::uint64_t key : {0, 16, 32}) {
+    cache.keep(key, tile(static_cast<float>(key)));
+    EXPECT_NE(cache.find(0), nullptr);  // 0 stays in use
+  }
+  EXPECT_EQ(cache.find(16), nullptr);
+  ASSERT_NE(cache.find(32), nullptr);
+  EXPECT_EQ(cache.find(32)->front(), 32.0f);
+  EXPECT_NE(cache.new_owner(), cache.new_owner());
+}
+
+// What is wrong with the file is said when it is loaded, and so is a disk without room.
+TEST(LargeTexture, WhatIsWrongIsSaid) {
+  Folder folder;
+  ASSERT_TRUE(write_image(folder / "t.exr", scattered(300, 200)));
+  std::filesystem::resize_file(folder / "t.exr", 200000);
+  TextureCache cache({}, {}, all_to_disk);
+  EXPECT_FALSE(cache.load(folder / "t.exr", "color"));
+
+  ASSERT_TRUE(write_image(folder / "u.exr", scattered(300, 200)));
+  const char* before = std::getenv("TMPDIR");
+  const std::string kept = before ? before : "";
+  ::setenv("TMPDIR", (folder / "nowhere").c_str(), 1);
+  const auto refused = cache.load(folder / "u.exr", "color");
+  if (before)
+    ::setenv("TMPDIR", kept.c_str(), 1);
+  else
+    ::unsetenv("TMPDIR");
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("TMPDIR names the folder"), std::string::npos);
 }
 
 }  // namespace

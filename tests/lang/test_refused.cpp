@@ -84,6 +84,34 @@ TEST(Refused, WhatIsMissingAtALinesEndIsMissingBehindItsLastWord) {
   EXPECT_EQ(Parsed("a = \"text").summary(), "1:5 open-string");
 }
 
+// Brackets that end at one place are one mistake, and what they swallow is none.
+TEST(Refused, OneMistakeIsOneError) {
+  EXPECT_EQ(Parsed("a = (1 + (2 * [3\nb = 1").summary(), "1:5 unclosed-bracket");
+  EXPECT_EQ(Parsed("R = 1 [[ min = 0\na = R").summary(), "1:7 unclosed-bracket");
+  EXPECT_EQ(Parsed("for i in [1 ..\n    a = i\nb = 1").summary(), "1:10 unclosed-bracket");
+  EXPECT_EQ(Parsed("a = texture(\"foo").summary(), "1:13 open-string");
+  EXPECT_EQ(Parsed("a = f(\"foo, 1)\nb = g(2").summary(), "1:7 open-string, 2:6 unclosed-bracket");
+  EXPECT_EQ(Parsed("a = \u201chello\u201d").summary(), "1:5 foreign-spelling");
+  EXPECT_EQ(Parsed("a = 1 " + std::string(5000, '@')).summary(), "1:7 bad-character");
+  EXPECT_EQ(Parsed("a = " + std::string(1000000, 'a')).summary(), "1:5 name-too-long");
+  for (const char* opener : {"(", "[", "if a {"}) {
+    std::string text = "a = 1\nb = ";
+    if (*opener == 'i') text = "a = 1\n";
+    for (int i = 0; i < 10000; ++i) text += opener;
+    const std::string summary = Parsed(text).summary();
+    EXPECT_TRUE(summary.ends_with(" unclosed-bracket") && summary.find(',') == std::string::npos)
+        << summary;
+  }
+}
+
+// Each bracket is counted, and the text says what to add where.
+TEST(Refused, UnclosedBracketsAreCounted) {
+  const std::string printed = Parsed("a = (1 + (2 * [3\nb = 1").printed();
+  EXPECT_NE(printed.find("`(` is never closed, nor are 2 brackets in it"), std::string::npos);
+  EXPECT_NE(printed.find("add `]))` on this line"), std::string::npos) << printed;
+  EXPECT_NE(Parsed("a = ((1").printed().find("nor is the bracket in it"), std::string::npos);
+}
+
 TEST(Refused, AfterAnErrorTheRestIsRead) {
   const Parsed parsed("a = )\nb = 1\nif c = 2\n  d = (\ne = 3\n");
   EXPECT_EQ(

@@ -1,5 +1,5 @@
-// The library in the language: its files are in order, and the programs in this folder hold its functions to values
-// derived by hand.
+// The library in the language: its files are in order, and the programs in this folder hold its
+// functions to values derived by hand.
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -25,9 +25,11 @@ std::vector<std::string> programs_in(const char* folder) {
   return names;
 }
 
-std::string test_name(const testing::TestParamInfo<std::string>& info) { return info.param.substr(0, info.param.find('.')); }
+std::string test_name(const testing::TestParamInfo<std::string>& info) {
+  return info.param.substr(0, info.param.find('.'));
+}
 
-// ---- The files -------------------------------------------------------------------------------------------------
+// ---- The files ----------------------------------------------------------------------------------
 
 class LibraryFile : public testing::TestWithParam<std::string> {};
 
@@ -42,7 +44,8 @@ TEST_P(LibraryFile, IsFormatted) {
 }
 
 TEST_P(LibraryFile, OpensWithACommentAndDescribesEachFunction) {
-  const std::vector<std::string> lines = lines_of(text_of(fs::path(PSE_SOURCE_DIR) / "library" / GetParam()));
+  const std::vector<std::string> lines =
+      lines_of(text_of(fs::path(PSE_SOURCE_DIR) / "library" / GetParam()));
   ASSERT_FALSE(lines.empty());
   EXPECT_TRUE(lines.front().starts_with("# "));
   for (std::size_t i = 1; i < lines.size(); ++i) {
@@ -56,10 +59,12 @@ TEST_P(LibraryFile, HasProgramsThatTestEveryFunction) {
   std::string uses;
   for (const std::string& name : programs_in("tests/library"))
     uses += text_of(fs::path(PSE_SOURCE_DIR) / "tests/library" / name);
-  for (const std::string& line : lines_of(text_of(fs::path(PSE_SOURCE_DIR) / "library" / GetParam()))) {
+  for (const std::string& line :
+       lines_of(text_of(fs::path(PSE_SOURCE_DIR) / "library" / GetParam()))) {
     if (!line.starts_with("function ")) continue;
     const std::string name = line.substr(9, line.find('(') - 9);
-    EXPECT_NE(uses.find(name), std::string::npos) << name << " is named by no program in tests/library";
+    EXPECT_NE(uses.find(name), std::string::npos)
+        << name << " is named by no program in tests/library";
   }
 }
 
@@ -74,7 +79,7 @@ TEST(Library, DefinesEachFunctionOnce) {
     }
 }
 
-// ---- What the functions give -----------------------------------------------------------------------------------
+// ---- What the functions give --------------------------------------------------------------------
 
 class LibraryProgram : public testing::TestWithParam<std::string> {};
 
@@ -82,7 +87,8 @@ TEST_P(LibraryProgram, DoesWhatItsCommentsSay) {
   check_program(GetParam(), text_of(fs::path(PSE_SOURCE_DIR) / "tests/library" / GetParam()));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, LibraryProgram, testing::ValuesIn(programs_in("tests/library")), test_name);
+INSTANTIATE_TEST_SUITE_P(All, LibraryProgram, testing::ValuesIn(programs_in("tests/library")),
+                         test_name);
 
 }  // namespace
 }  // namespace pse::test

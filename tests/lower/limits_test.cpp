@@ -43,9 +43,13 @@ TEST(Limits, ALongChainOfElseIf) {
 
 TEST(Limits, ManyEarlyReturns) {
   const auto returns = [](int count) {
-    return "function f(t)\n" + repeated(count, [](int i) {
-             return "    if t > " + std::to_string(i) + "\n        return " + std::to_string(i) + "\n";
-           }) + "    return t\na = f(x)\n";
+    return "function f(t)\n" +
+           repeated(count,
+                    [](int i) {
+                      return "    if t > " + std::to_string(i) + "\n        return " +
+                             std::to_string(i) + "\n";
+                    }) +
+           "    return t\na = f(x)\n";
   };
   EXPECT_EQ(errors_of(returns(400)), "");
   EXPECT_EQ(errors_of(returns(20'000)), "too-deep ");

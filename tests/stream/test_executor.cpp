@@ -150,8 +150,8 @@ TEST(Executor, MemoryLimitBoundsTilesInFlight) {
   EXPECT_LE(most, 2);  // on a busy machine even fewer
 }
 
-// How soon is measured in bench/stream; that each vector of samples and each turn of a loop looks at
-// the flag is held by tests/codegen/cancel_test.cpp.
+// How soon is measured in bench/stream; that each vector of samples and each turn of a loop looks
+// at the flag is held by tests/codegen/cancel_test.cpp.
 TEST(Executor, CancelStopsEndlessLoops) {
   // The kernel loops until it is told to stop, as compiled loops do.
   std::atomic<bool> running = false;

@@ -1,6 +1,8 @@
 // What a program's comments say must come out of it, and the check that it does.
-//   # expect: name = 0.5            # expect: name = [1 2 3]            # expect: name = 0.5 within 0.01
-//   ...  # error: code              ...  # warning: code                # fails: part of the message
+//   # expect: name = 0.5            # expect: name = [1 2 3]            # expect: name = 0.5 within
+//   0.01
+//   ...  # error: code              ...  # warning: code                # fails: part of the
+//   message
 #pragma once
 
 #include <gtest/gtest.h>
@@ -59,14 +61,17 @@ inline Expectations read_expectations(const std::string& text) {
       result.values.push_back(std::move(value));
     }
     std::string code;
-    if (std::istringstream words(after("# error: ")); words >> code) result.errors.emplace_back(number, code);
-    if (std::istringstream words(after("# warning: ")); words >> code) result.warnings.emplace_back(number, code);
+    if (std::istringstream words(after("# error: ")); words >> code)
+      result.errors.emplace_back(number, code);
+    if (std::istringstream words(after("# warning: ")); words >> code)
+      result.warnings.emplace_back(number, code);
     if (const std::string message = after("# fails: "); !message.empty()) result.failure = message;
   }
   return result;
 }
 
-// Runs the program compiled and interpreted, and holds it to its comments. A program without any must run.
+// Runs the program compiled and interpreted, and holds it to its comments. A program without any
+// must run.
 inline void check_program(const std::string& name, const std::string& text,
                           const std::map<std::string, std::string>& modules = {}) {
   const Expectations expected = read_expectations(text);
@@ -78,7 +83,8 @@ inline void check_program(const std::string& name, const std::string& text,
     std::vector<std::pair<int, std::string>> errors, warnings;
     for (const Diagnostic& diagnostic : run.diagnostics.all()) {
       const int line = diagnostic.span.valid() ? run.sources.position(diagnostic.span).line : 0;
-      (diagnostic.severity == Severity::error ? errors : warnings).emplace_back(line, diagnostic.code);
+      (diagnostic.severity == Severity::error ? errors : warnings)
+          .emplace_back(line, diagnostic.code);
     }
     std::sort(errors.begin(), errors.end());
     std::sort(warnings.begin(), warnings.end());
@@ -102,9 +108,11 @@ inline void check_program(const std::string& name, const std::string& text,
       for (std::size_t c = 0; c < value.components.size(); ++c) {
         const float want = value.components[c], got = found->second[c];
         if (std::isfinite(want))
-          EXPECT_NEAR(got, want, value.tolerance * std::max(1.0f, std::abs(want))) << value.name << " [" << c + 1 << "]";
+          EXPECT_NEAR(got, want, value.tolerance * std::max(1.0f, std::abs(want)))
+              << value.name << " [" << c + 1 << "]";
         else
-          EXPECT_TRUE(std::isnan(want) ? std::isnan(got) : got == want) << value.name << " is " << got;
+          EXPECT_TRUE(std::isnan(want) ? std::isnan(got) : got == want)
+              << value.name << " is " << got;
       }
     }
   }

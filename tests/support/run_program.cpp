@@ -9,7 +9,8 @@ std::string Outcome::messages() const {
   std::string text;
   for (const Diagnostic& d : diagnostics.all()) {
     const std::string line = d.span.valid() ? std::to_string(sources.position(d.span).line) : "?";
-    text += line + ":" + d.code + ": " + d.message + (d.suggestion.empty() ? "" : " (" + d.suggestion + ")") + "\n";
+    text += line + ":" + d.code + ": " + d.message +
+            (d.suggestion.empty() ? "" : " (" + d.suggestion + ")") + "\n";
   }
   return text;
 }
@@ -52,7 +53,8 @@ Outcome run_program(const std::string& text, const Sample& sample, const RunSett
           if (input == (value.size() == 1 ? name : name + "." + std::to_string(c))) return value[c];
     for (const Knob& knob : outcome.program->knobs)
       for (std::size_t c = 0; c < knob.value.size(); ++c)
-        if (input == (knob.value.size() == 1 ? knob.name : knob.name + "." + std::to_string(c))) return knob.value[c];
+        if (input == (knob.value.size() == 1 ? knob.name : knob.name + "." + std::to_string(c)))
+          return knob.value[c];
     return 0;
   };
   FrameState state;
@@ -72,7 +74,8 @@ Outcome run_program(const std::string& text, const Sample& sample, const RunSett
   Scratch scratch;
   outcome.program->kernel->run_frame(state, status);
   if (status.failed_check < 0)
-    outcome.program->kernel->run_samples(state, status, scratch, input_pointers.data(), output_pointers.data(), 1);
+    outcome.program->kernel->run_samples(state, status, scratch, input_pointers.data(),
+                                         output_pointers.data(), 1);
   if (status.failed_check >= 0) {
     const ir::Check& check = module.checks[static_cast<std::size_t>(status.failed_check.load())];
     outcome.failed_check =
@@ -80,7 +83,8 @@ Outcome run_program(const std::string& text, const Sample& sample, const RunSett
   }
   std::size_t next = 0;
   for (const ProgramOutput& output : outcome.program->outputs)
-    for (int c = 0; c < output.components; ++c) outcome.values[output.name].push_back(outputs[next++].front());
+    for (int c = 0; c < output.components; ++c)
+      outcome.values[output.name].push_back(outputs[next++].front());
   return outcome;
 }
 

@@ -37,6 +37,7 @@ struct RunSettings {
   std::map<std::string, std::string> modules;  // texts for `import`
 };
 
-Outcome run_program(const std::string& text, const Sample& sample = {}, const RunSettings& settings = {});
+Outcome run_program(const std::string& text, const Sample& sample = {},
+                    const RunSettings& settings = {});
 
 }  // namespace pse::test

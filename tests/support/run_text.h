@@ -1,4 +1,5 @@
-// Runs a program's text on a small picture and says what came out: for tests whose cases are programs.
+// Runs a program's text on a small picture and says what came out: for tests whose cases are
+// programs.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +18,7 @@ struct TextRun {
   Diagnostics diagnostics;
   std::shared_ptr<const Program> program;  // null after errors
   RunEnd end = RunEnd::failed;
-  std::string failure;                                // a failed check, as "file:line:column: message"
+  std::string failure;  // a failed check, as "file:line:column: message"
   std::map<std::string, std::vector<float>> outputs;  // name -> components at the looked-at pixel
   bool all_finite = true;                             // of all outputs at all pixels
   std::string printed() const { return print_text(diagnostics, sources, false); }
@@ -31,7 +32,8 @@ struct TextRunOptions {
 };
 
 // The middle pixel is the one looked at.
-inline TextRun run_text(const std::string& name, const std::string& text, const TextRunOptions& options = {}) {
+inline TextRun run_text(const std::string& name, const std::string& text,
+                        const TextRunOptions& options = {}) {
   TextRun run;
   LowerHost host;
   host.find_module = [&](SourceMap& sources, const std::string& module) -> std::optional<FileId> {
@@ -57,7 +59,8 @@ inline TextRun run_text(const std::string& name, const std::string& text, const 
   for (const Knob& knob : run.program->knobs)
     for (std::size_t i = 0; i < module.inputs.size(); ++i)
       for (std::size_t c = 0; c < knob.value.size(); ++c)
-        if (module.inputs[i].name == (knob.value.size() == 1 ? knob.name : knob.name + "." + std::to_string(c)))
+        if (module.inputs[i].name ==
+            (knob.value.size() == 1 ? knob.name : knob.name + "." + std::to_string(c)))
           state.uniforms[i] = knob.value[c];
 
   // Run it all in one thread, and keep the middle pixel.
@@ -67,16 +70,19 @@ inline TextRun run_text(const std::string& name, const std::string& text, const 
   RunStatus status;
   std::vector<float> middle(module.outputs.size());
   const TileSink sink = [&](const TileView& tile) {
-    const std::int64_t at = static_cast<std::int64_t>(options.height / 2 - tile.rect.y0) * tile.rect.width() +
-                            (options.width / 2 - tile.rect.x0);
+    const std::int64_t at =
+        static_cast<std::int64_t>(options.height / 2 - tile.rect.y0) * tile.rect.width() +
+        (options.width / 2 - tile.rect.x0);
     for (std::size_t o = 0; o < module.outputs.size(); ++o) {
       for (std::int64_t i = 0; i < tile.count; ++i)
-        run.all_finite = run.all_finite && std::abs(tile.planes[o][i]) <= std::numeric_limits<float>::max();
+        run.all_finite =
+            run.all_finite && std::abs(tile.planes[o][i]) <= std::numeric_limits<float>::max();
       middle[o] = tile.planes[o][at];
     }
   };
   const RunResult result =
-      execute(*run.program, state, image_plane_source(module, plane, execute_options.window), sink, execute_options, status);
+      execute(*run.program, state, image_plane_source(module, plane, execute_options.window), sink,
+              execute_options, status);
   run.end = result.end;
   if (result.failed_check >= 0) {
     const ir::Check& check = module.checks[static_cast<std::size_t>(result.failed_check)];

@@ -40,8 +40,8 @@ class View : public OcioView {
   OCIO::ConstCPUProcessorRcPtr processor_;
 };
 
-// `name`, or the default where it is empty; nothing, with the names there are, where it is not among
-// them.
+// `name`, or the default where it is empty; nothing, with the names there are, where it is not
+// among them.
 std::optional<std::string> pick(const std::string& name, const char* usual,
                                 const std::vector<std::string>& known, const std::string& what,
                                 std::string& error) {

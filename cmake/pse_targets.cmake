@@ -85,6 +85,8 @@ function(pse_tests name)
     target_link_libraries(test_${name} PRIVATE pse_${used})
   endforeach()
   target_compile_definitions(test_${name} PRIVATE PSE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  # Helpers of tests are named for their file alone, so these cannot be compiled several at a time.
+  set_target_properties(test_${name} PROPERTIES UNITY_BUILD OFF)
   if(PSE_PRECOMPILE)
     if(NOT TARGET pse_precompiled_tests)
       pse_precompile(pse_precompiled_tests <gtest/gtest.h>)

@@ -51,9 +51,9 @@ bool solve(std::array<Row, 5>& rows, std::size_t count, std::array<double, 5>& u
 std::optional<Surface> best_surface(float here, const std::array<float, 8>& values, unsigned known,
                                     std::size_t count) {
   std::array<Row, 5> rows{};
-  for (std::size_t i = 0; i < around.size(); ++i) {
+  for (std::size_t i = 0; i < eight_around.size(); ++i) {
     if (!(known >> i & 1)) continue;
-    const double x = around[i][0], y = around[i][1];
+    const double x = eight_around[i][0], y = eight_around[i][1];
     const std::array<double, 5> terms = {x, y, x * x / 2, y * y / 2, x * y};
     const double difference = double(values[i]) - double(here);
     for (std::size_t k = 0; k < count; ++k) {
@@ -68,9 +68,9 @@ std::optional<Surface> best_surface(float here, const std::array<float, 8>& valu
 
 double variance(const Surface& surface, const std::array<float, 8>& values, unsigned known) {
   double sum = 0;
-  for (std::size_t i = 0; i < around.size(); ++i)
+  for (std::size_t i = 0; i < eight_around.size(); ++i)
     if (known >> i & 1) {
-      const double miss = surface.at(around[i][0], around[i][1]) - double(values[i]);
+      const double miss = surface.at(eight_around[i][0], eight_around[i][1]) - double(values[i]);
       sum += miss * miss;
     }
   return std::sqrt(sum / std::popcount(known));
@@ -113,8 +113,9 @@ Fit fit_edge(float here, const std::array<float, 8>& values, unsigned known, con
   const float moment = filter.moment(edge.distance, edge.nx, edge.ny);
   edge.share = std::clamp(
       straight + edge.bend / 2 * moment * (1 - 0.75f * edge.bend * edge.distance), 0.0f, 1.0f);
-  for (std::size_t i = 0; i < around.size(); ++i)
-    edge.distances[i] = static_cast<float>(distance + around[i][0] * nx + around[i][1] * ny);
+  for (std::size_t i = 0; i < eight_around.size(); ++i)
+    edge.distances[i] =
+        static_cast<float>(distance + eight_around[i][0] * nx + eight_around[i][1] * ny);
   return Fit::edge;
 }
 

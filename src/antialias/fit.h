@@ -11,7 +11,7 @@
 namespace pse::antialias {
 
 // The eight neighbours, row by row.
-inline constexpr std::array<std::array<int, 2>, 8> around = {
+inline constexpr std::array<std::array<int, 2>, 8> eight_around = {
     {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}}};
 
 // Where the value is 0: a line that bends.

@@ -15,7 +15,7 @@ namespace {
 
 // Conditionals that cross one pixel; more are left as they fall.
 constexpr int most_depth = 6;
-constexpr std::size_t batch = 4096;
+constexpr std::size_t branches_at_once = 4096;
 
 }  // namespace
 
@@ -23,7 +23,7 @@ constexpr std::size_t batch = 4096;
 struct StoredRefiner::Branch {
   std::size_t pixel;  // of Refined
   std::uint32_t high = 0, low = 0;
-  unsigned neighbours = 0;  // those that take it too, as bits of `around`
+  unsigned neighbours = 0;  // those that take it too, as bits of `eight_around`
   float weight = 1;
   int depth = 0;
 };
@@ -66,12 +66,12 @@ StoredRefiner::Values StoredRefiner::run(std::span<float* const> inputs, const S
   std::vector<bool> used;
   for (const ir::Input& input : program_.module().inputs)
     used.push_back(input.rate == ir::Rate::sample);
-  const auto capacity = static_cast<std::int64_t>(std::min(count, batch));
+  const auto capacity = static_cast<std::int64_t>(std::min(count, branches_at_once));
   const Planes in(used, capacity), out(std::vector<bool>(outputs, true), capacity);
   Values results(outputs, std::vector<float>(count));
   Scratch scratch;
-  for (std::size_t first = 0; first < count && !status.cancel; first += batch) {
-    const std::size_t size = std::min(batch, count - first);
+  for (std::size_t first = 0; first < count && !status.cancel; first += branches_at_once) {
+    const std::size_t size = std::min(branches_at_once, count - first);
     for (std::size_t i = 0; i < used.size(); ++i) {
       if (!used[i]) continue;
       float* to = in.pointers()[i];
@@ -106,8 +106,8 @@ Refined StoredRefiner::refine(const Tile& tile, std::span<float* const> inputs, 
   std::vector<Branch> branches;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     Branch branch{.pixel = i};
-    for (std::size_t n = 0; n < around.size(); ++n) {
-      const int x = pixels[i].x + around[n][0], y = pixels[i].y + around[n][1];
+    for (std::size_t n = 0; n < eight_around.size(); ++n) {
+      const int x = pixels[i].x + eight_around[n][0], y = pixels[i].y + eight_around[n][1];
       const bool is_there = x >= known_.x0 && x < known_.x1 && y >= known_.y0 && y < known_.y1;
       if (is_there &&
           (!tile.ids || tile.ids[tile.at(x, y)] == tile.ids[tile.at(pixels[i].x, pixels[i].y)]))
@@ -126,8 +126,8 @@ Refined StoredRefiner::refine(const Tile& tile, std::span<float* const> inputs, 
     for (const Branch& branch : branches) {
       first.push_back(samples.at.size());
       add(branch, 0, 0);
-      for (std::size_t n = 0; n < around.size(); ++n)
-        if (branch.neighbours >> n & 1) add(branch, around[n][0], around[n][1]);
+      for (std::size_t n = 0; n < eight_around.size(); ++n)
+        if (branch.neighbours >> n & 1) add(branch, eight_around[n][0], eight_around[n][1]);
     }
     const Values results = run(inputs, samples, status);
     std::vector<Branch> next;
@@ -174,7 +174,7 @@ void StoredRefiner::advance(const Branch& branch, const Values& results, std::si
     unsigned known = 0, same_side = 0;
     bool changes = false;
     std::size_t next_sample = first + 1;
-    for (std::size_t n = 0; n < around.size(); ++n) {
+    for (std::size_t n = 0; n < eight_around.size(); ++n) {
       if (!(branch.neighbours >> n & 1)) continue;
       there[n] = values[next_sample++] - level;
       if (std::isnan(there[n]) || !(list >> n & 1)) continue;
@@ -201,7 +201,7 @@ void StoredRefiner::advance(const Branch& branch, const Values& results, std::si
     high.high |= condition.bit, low.low |= condition.bit;
     high.weight *= edge.share, low.weight *= 1 - edge.share;
     high.depth = low.depth = branch.depth + 1;
-    for (std::size_t n = 0; n < around.size(); ++n) {
+    for (std::size_t n = 0; n < eight_around.size(); ++n) {
       if (!(edge.distances[n] > -reach)) high.neighbours &= ~(1u << n);
       if (!(edge.distances[n] < reach)) low.neighbours &= ~(1u << n);
     }

@@ -103,13 +103,13 @@ std::vector<image::Place> places_of(const image::Image& rows, const ImagePlane& 
 }
 
 // One input of the module and the plane that feeds it.
-struct Feed {
+struct TableFeed {
   std::size_t input;
   std::shared_ptr<const image::Splatted> table;
   const std::vector<float>* plane;
 };
 
-void fill(const Feed& feed, int width, int height, const TileView& tile) {
+void fill(const TableFeed& feed, int width, int height, const TileView& tile) {
   float* out = tile.planes[feed.input];
   for (int y = tile.rect.y0; y < tile.rect.y1; ++y)
     for (int x = tile.rect.x0; x < tile.rect.x1; ++x) {
@@ -214,7 +214,7 @@ TileSource InsertedTables::load(const ir::Module& module, const ImagePlane& plan
       if (module.inputs[i].rate == ir::Rate::sample && module.inputs[i].name == name) return i;
     return std::nullopt;
   };
-  auto feeds = std::make_shared<std::vector<Feed>>();
+  auto feeds = std::make_shared<std::vector<TableFeed>>();
   for (const Table& table : tables_) {
     // The columns that the program reads.
     std::vector<image::SplatColumn> columns;
@@ -239,7 +239,7 @@ TileSource InsertedTables::load(const ir::Module& module, const ImagePlane& plan
     if (coverage) feeds->push_back({*coverage, splatted, &splatted->coverage});
   }
   return [feeds, width = plane.width, height = plane.height](const TileView& tile) {
-    for (const Feed& feed : *feeds) fill(feed, width, height, tile);
+    for (const TableFeed& feed : *feeds) fill(feed, width, height, tile);
   };
 }
 

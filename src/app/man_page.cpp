@@ -10,7 +10,7 @@ namespace pse::app {
 namespace {
 
 // Text in which roff sees no commands of its own.
-std::string quoted(std::string_view text) {
+std::string escaped(std::string_view text) {
   std::string out;
   bool line_start = true;
   for (const char c : text) {
@@ -27,7 +27,7 @@ std::string quoted(std::string_view text) {
 }
 
 std::string paragraphs(std::string_view text) {
-  std::string out = quoted(text) + "\n";
+  std::string out = escaped(text) + "\n";
   for (std::size_t at = 0; (at = out.find("\n\n", at)) != std::string::npos; at += 5)
     out.replace(at, 2, "\n.PP\n");
   return out;
@@ -38,7 +38,7 @@ std::string heading(const std::string& title, const std::string& date) {
 }
 
 std::string term(std::string_view name, std::string_view meaning) {
-  return fmt::format(".TP\n.B {}\n{}\n", quoted(name), quoted(meaning));
+  return fmt::format(".TP\n.B {}\n{}\n", escaped(name), escaped(meaning));
 }
 
 std::string common_sections() {
@@ -58,25 +58,25 @@ std::string common_sections() {
 
 std::string man_page(const CommandSpec& command, const std::string& date) {
   std::string out = heading(fmt::format("PSE\\-{}", command.name), date);
-  out += fmt::format(".SH NAME\npse\\-{} \\- {}\n", command.name, quoted(command.summary));
-  out += fmt::format(".SH SYNOPSIS\n.B pse {}\n{}\n", command.name, quoted(command.usage));
+  out += fmt::format(".SH NAME\npse\\-{} \\- {}\n", command.name, escaped(command.summary));
+  out += fmt::format(".SH SYNOPSIS\n.B pse {}\n{}\n", command.name, escaped(command.usage));
   out += ".SH DESCRIPTION\n" + paragraphs(command.description);
 
   out += ".SH OPTIONS\n";
   for (const OptionSpec& option : command.options) {
     std::string names = option.letter.empty() ? "" : fmt::format("\\-{}, ", option.letter);
-    names += quoted(fmt::format("--{}", option.name));
+    names += escaped(fmt::format("--{}", option.name));
     std::string value;
     if (option.takes == Takes::optional) value = fmt::format("[={}]", option.value);
     if (option.takes == Takes::one || option.takes == Takes::many)
       value = fmt::format(" {}", option.value);
-    std::string text = quoted(option.help);
+    std::string text = escaped(option.help);
     if (!option.choices.empty())
-      text += quoted(fmt::format(" ({})", fmt::join(option.choices, ", ")));
+      text += escaped(fmt::format(" ({})", fmt::join(option.choices, ", ")));
     if (!option.environment.empty())
       text += fmt::format("\nAlso set by the variable {}.", option.environment);
     out += fmt::format(".TP\n\\fB{}\\fR{}\n{}\n", names,
-                       value.empty() ? "" : "\\fI" + quoted(value) + "\\fR", text);
+                       value.empty() ? "" : "\\fI" + escaped(value) + "\\fR", text);
   }
   if (!command.examples.empty()) out += ".SH EXAMPLES\n";
   for (const auto& [line, meaning] : command.examples) out += term(line, meaning);

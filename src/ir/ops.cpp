@@ -9,7 +9,7 @@ namespace {
 // Throughout: float is IEEE binary32, round to nearest even, subnormals kept, nothing contracted.
 // Every NaN is the same value: no operator's result may depend on a NaN's sign or payload, and
 // outputs store the NaN 0x7fc00000.
-constexpr std::array table = {
+constexpr std::array operators = {
     OpInfo{Op::const_f32, "const.f", "", "f", true, "the float `imm`"},
     OpInfo{Op::const_i32, "const.i", "", "i", true, "the 32-bit integer `imm`"},
     OpInfo{Op::const_bool, "const.b", "", "b", true, "true if `imm` is not 0"},
@@ -102,11 +102,11 @@ constexpr std::array table = {
            "params = operands; while region 0's yield is true: params = region 1's yields; gives "
            "the params"},
 };
-static_assert(table.size() == static_cast<std::size_t>(Op::loop) + 1);
+static_assert(operators.size() == static_cast<std::size_t>(Op::loop) + 1);
 
 }  // namespace
 
-std::span<const OpInfo> op_table() { return table; }
-const OpInfo& info(Op op) { return table[static_cast<std::size_t>(op)]; }
+std::span<const OpInfo> op_table() { return operators; }
+const OpInfo& info(Op op) { return operators[static_cast<std::size_t>(op)]; }
 
 }  // namespace pse::ir

@@ -8,7 +8,6 @@
 namespace pse::surface {
 namespace {
 
-constexpr double pi = std::numbers::pi;
 
 // Points to be asked for; room up to a multiple of 16, as kernels want it.
 class Points {
@@ -74,9 +73,9 @@ class Isosurface : public Shape {
       point.normal = point.flat = normal;
       if (!with_uv) continue;
       const Vec3 p = ray.origin + meetings[i].t * ray.direction - box_.centre();
-      point.u = std::atan2(-p.z, p.x) / (2 * pi);
+      point.u = std::atan2(-p.z, p.x) / (2 * std::numbers::pi);
       if (point.u < 0) point.u += 1;
-      point.v = 0.5 + std::atan2(p.y, std::hypot(p.x, p.z)) / pi;
+      point.v = 0.5 + std::atan2(p.y, std::hypot(p.x, p.z)) / std::numbers::pi;
     }
   }
 

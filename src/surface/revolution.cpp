@@ -11,7 +11,6 @@ namespace pse::surface {
 namespace revolution {
 namespace {
 
-constexpr double pi = std::numbers::pi;
 
 double slope(const double (&c)[4], double v) { return (3 * c[3] * v + 2 * c[2]) * v + c[1]; }
 
@@ -182,7 +181,8 @@ class Revolution : public Shape {
       Hull& hull = all.emplace_back();
       for (std::size_t i = 0; i < 4; ++i)
         for (int corner = 0; corner < corners; ++corner) {
-          const double angle = 2 * pi * corner / corners, r = radius[i] / std::cos(pi / corners);
+          const double angle = 2 * std::numbers::pi * corner / corners;
+          const double r = radius[i] / std::cos(std::numbers::pi / corners);
           hull.push_back({r * std::cos(angle), height[i], r * std::sin(angle)});
         }
     }
@@ -218,7 +218,7 @@ class Revolution : public Shape {
     if (out == 0 && up == 0) out = 1;
     const Vec3 normal{out * c, up, out * s};
     if (!with_uv) return {normal, normal, 0, 0};
-    double u = std::atan2(-p.z, p.x) / (2 * pi);
+    double u = std::atan2(-p.z, p.x) / (2 * std::numbers::pi);
     if (u < 0) u += 1;
     return {normal, normal, u, (double(meeting.part) + meeting.a) / double(pieces_.size())};
   }

@@ -9,7 +9,6 @@
 namespace pse::surface {
 namespace {
 
-constexpr double pi = std::numbers::pi;
 
 class Superquadric : public SingleShape {
  public:
@@ -110,9 +109,10 @@ class Superquadric : public SingleShape {
     gauge(p, point.normal);
     point.flat = point.normal;
     if (!with_uv) return point;
-    point.u = std::atan2(-p.z / axes_.z, p.x / axes_.x) / (2 * pi);
+    point.u = std::atan2(-p.z / axes_.z, p.x / axes_.x) / (2 * std::numbers::pi);
     if (point.u < 0) point.u += 1;
-    point.v = 0.5 + std::atan2(p.y / axes_.y, std::hypot(p.x / axes_.x, p.z / axes_.z)) / pi;
+    const double out = std::hypot(p.x / axes_.x, p.z / axes_.z);
+    point.v = 0.5 + std::atan2(p.y / axes_.y, out) / std::numbers::pi;
     return point;
   }
 

@@ -162,7 +162,7 @@ Exit bake_atlas(Session& session) {
   report(diagnostics, program.sources, session);
   if (!compiled) return Exit::program;
   const std::vector<Knob> knobs = apply_settings(compiled->knobs, settings, session.console);
-  stored.load(compiled->module());
+  report(stored.load(compiled->module()), program.sources, session);
   const std::vector<PlannedFile> files = plan_outputs(common, *compiled);
 
   // Run, frame by frame.

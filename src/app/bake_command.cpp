@@ -108,7 +108,7 @@ Exit bake_command(Session& session) {
     compiled = std::move(named);
   }
   const std::vector<Knob> knobs = apply_settings(compiled->knobs, settings, session.console);
-  stored.load(compiled->module());
+  report(stored.load(compiled->module()), program.sources, session);
 
   return BakeJob(session, options, program.sources, program.file, compiled, knobs, stored, signals)
       .run();

@@ -83,7 +83,7 @@ Exit PrepassStage::run(Session& session, RenderOptions& options, const ProgramFi
     if (output.name == "span" && output.components != 2)
       throw Failure(Exit::program, "`span` is a vector of two: [near far]");
   const std::vector<Knob> knobs = apply_settings(compiled->knobs, settings, session.console);
-  stored.load(compiled->module());
+  report(stored.load(compiled->module()), program.sources, session);
   CompileOptions bound_with = compile_with;
   bound_with.lower.outputs = {"span"};
   const auto bounded = compile_bounds(program, host, bound_with);

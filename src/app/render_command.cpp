@@ -162,7 +162,7 @@ Exit render_command(Session& session) {
     std::vector<Knob> knobs = apply_settings(
         own, requests.size() > 1 ? joined(request.knobs, known(settings, own)) : given,
         session.console);
-    textures->load(made->shown->module());
+    report(textures->load(made->shown->module()), program.sources, session);
     parts.push_back({std::move(*made), std::move(knobs), std::move(textures)});
   }
   if (!stage.empty()) return Exit::ok;

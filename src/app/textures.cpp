@@ -32,6 +32,22 @@ TextureName parse_name(std::string_view name) {
   return parts;
 }
 
+// Where the first call of an external is written; invalid where none is left.
+Span call_in(const ir::Region& region, std::int32_t external) {
+  for (const ir::Instruction& in : region.body) {
+    if (in.op == ir::Op::external && in.imm == external) return in.span;
+    for (const ir::Region& inner : in.regions)
+      if (const Span span = call_in(inner, external); span.valid()) return span;
+  }
+  return {};
+}
+
+Span call_of(const ir::Module& module, std::int32_t external) {
+  for (const ir::Function& function : module.functions)
+    if (const Span span = call_in(function.body, external); span.valid()) return span;
+  return {};
+}
+
 }  // namespace
 
 Textures::Textures(const Session& session, const std::string& program_path,
@@ -72,31 +88,38 @@ void Textures::answer(LowerHost& host) const {
   };
 }
 
-void Textures::load(const ir::Module& module) {
-  for (const ir::External& external : module.externals) {
-    if (external.name.starts_with("texture "))
-      functions_.push_back(bind_texture(external));
-    else if (external.name.starts_with("volume "))
-      functions_.push_back(bind_volume(external));
-    else
+Diagnostics Textures::load(const ir::Module& module) {
+  Diagnostics diagnostics;
+  for (std::size_t i = 0; i < module.externals.size(); ++i) {
+    const ir::External& external = module.externals[i];
+    const bool texture = external.name.starts_with("texture ");
+    if (!texture && !external.name.starts_with("volume ")) {
       functions_.push_back({});  // somebody else binds it
+      continue;
+    }
+    const auto bound = texture ? bind_texture(external) : bind_volume(external);
+    if (!bound)
+      diagnostics.error(texture ? "texture" : "volume",
+                        call_of(module, static_cast<std::int32_t>(i)), bound.error().message);
+    functions_.push_back(bound.value_or(ExternalFunction{}));
   }
+  return diagnostics;
 }
 
-ExternalFunction Textures::bind_texture(const ir::External& external) {
+image::Result<ExternalFunction> Textures::bind_texture(const ir::External& external) {
   const TextureName name = parse_name(external.name);
   const auto texture = cache_->load(name.file, name.layer);
-  if (!texture) throw Failure(Exit::input, texture.error().message);
+  if (!texture) return std::unexpected(texture.error());
   texture_calls_.push_back(std::make_unique<image::TextureCall>(image::TextureCall{
       *texture, image::filter_from_name(name.filter).value_or(image::Filter::linear),
       image::wrap_from_name(name.wrap).value_or(image::Wrap::repeat), external.arguments > 2}));
   if (const auto ready = (*texture)->prepare(texture_calls_.back()->filter); !ready)
-    throw Failure(Exit::input, ready.error().message);
+    return std::unexpected(ready.error());
   identities_.emplace_back(name.file, file_identity(resolve_(name.file)));
-  return {&image::TextureCall::run, texture_calls_.back().get()};
+  return ExternalFunction{&image::TextureCall::run, texture_calls_.back().get()};
 }
 
-ExternalFunction Textures::bind_volume(const ir::External& external) {
+image::Result<ExternalFunction> Textures::bind_volume(const ir::External& external) {
   std::istringstream words(external.name);
   std::string word, grid, file;
   std::size_t length = 0;
@@ -107,10 +130,10 @@ ExternalFunction Textures::bind_volume(const ir::External& external) {
   words.get();
   std::getline(words, file, '\0');
   const auto volume = volumes_->load(file, grid);
-  if (!volume) throw Failure(Exit::input, volume.error().message);
+  if (!volume) return std::unexpected(volume.error());
   volume_calls_.push_back(std::make_unique<volume::VolumeCall>(volume::VolumeCall{*volume}));
   identities_.emplace_back(file, file_identity(resolve_(file)));
-  return {&volume::VolumeCall::run, volume_calls_.back().get()};
+  return ExternalFunction{&volume::VolumeCall::run, volume_calls_.back().get()};
 }
 
 }  // namespace pse::app

@@ -1,4 +1,5 @@
-// What is stored and looked up while a program runs: pictures with texture(), volumes with volume().
+// What is stored and looked up while a program runs: pictures with texture(), volumes with
+// volume().
 #pragma once
 
 #include <memory>
@@ -7,6 +8,8 @@
 
 #include "app/session.h"
 #include "codegen/kernel.h"
+#include "diag/diagnostics.h"
+#include "image/error.h"
 #include "image/texture.h"
 #include "lower/lower.h"
 #include "volume/volume.h"
@@ -20,16 +23,17 @@ class Textures {
 
   // Lets the lowering ask for the components of textures and volumes.
   void answer(LowerHost& host) const;
-  // Loads what the module calls. Throws Failure (input).
-  void load(const ir::Module& module);
+  // Loads what the module calls. Returns errors of code "texture" or "volume", each at a call of
+  // what cannot be read; with one, the module must not run.
+  Diagnostics load(const ir::Module& module);
   // What the module's externals are bound to; valid as long as this object.
   std::vector<ExternalFunction> functions() const { return functions_; }
   // Files loaded, with their identities.
   std::vector<std::pair<std::string, std::string>> identities() const { return identities_; }
 
  private:
-  ExternalFunction bind_texture(const ir::External& external);
-  ExternalFunction bind_volume(const ir::External& external);
+  image::Result<ExternalFunction> bind_texture(const ir::External& external);
+  image::Result<ExternalFunction> bind_volume(const ir::External& external);
 
   std::shared_ptr<image::TextureCache> cache_;
   std::shared_ptr<volume::VolumeCache> volumes_;

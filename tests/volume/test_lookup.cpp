@@ -1,9 +1,14 @@
 // volume() in programs: the same bits compiled and interpreted, linear between voxels, and files
 // that are not what they should be.
+#include <pthread.h>
+#include <unistd.h>
+
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 
 #include "run_pse.h"
+#include "volume/vdb.h"
 
 namespace pse::test {
 namespace {
@@ -137,6 +142,34 @@ TEST_F(Lookup, DamageIsToldWithPlaceAndRemedy) {
   EXPECT_TRUE(contains(second, "voxels.vdb is damaged or cut off: grid `density` cannot be read") ||
               contains(second, "not enough memory to read voxels.vdb"))
       << second;
+  EXPECT_TRUE(contains(second, "a.pse:1:5")) << second;
+  EXPECT_TRUE(contains(second, "    ^~~~")) << second;
+}
+
+// Where the child process that reads is moved to; nowhere if null.
+const char* place_of_children = nullptr;
+void move_child() {
+  if (place_of_children != nullptr && ::chdir(place_of_children) != 0) std::abort();
+}
+
+// Children are moved to the folder in which alone the name stands for a file: what is read there
+// was not read here.
+TEST_F(Lookup, FilesAreReadInAProcessOfTheirOwn) {
+  make_ramp();
+  ASSERT_FALSE(std::filesystem::exists("ramp.vdb"));
+  const auto vdb = volume::open_vdb();
+  ASSERT_TRUE(vdb) << vdb.error().message;
+  ASSERT_EQ(::pthread_atfork(nullptr, nullptr, move_child), 0);
+  const std::string there = folder().string();
+  place_of_children = there.c_str();
+  const auto info = (*vdb)->info("ramp.vdb");
+  const auto grid = (*vdb)->read("ramp.vdb", "density", std::size_t{1} << 30);
+  place_of_children = nullptr;
+  ASSERT_TRUE(info) << info.error().message;
+  EXPECT_EQ(info->grids.size(), 2u);
+  ASSERT_TRUE(grid) << grid.error().message;
+  EXPECT_FALSE(grid->voxels.empty());
+  EXPECT_FALSE((*vdb)->info("ramp.vdb"));
 }
 
 TEST_F(Lookup, DamagedFilesNeverCrashOrHang) {

@@ -268,6 +268,7 @@ void Surfaces::begin_frame(const ImagePlane& plane, const RunStatus& run) {
     return;
   }
   for (const auto& function : functions_) function->begin_frame(plane, run);
+  warn_unseen();
   // Place the objects.
   std::vector<surface::Object> objects;
   for (std::size_t i = 0; i < shapes_.size(); ++i)
@@ -330,6 +331,17 @@ void Surfaces::warn_inside(const surface::Camera& camera) {
   warned_ = true;
   console_.warning(fmt::format("the camera is inside {}: what is seen is its back",
                                fmt::join(around, ", ")));
+}
+
+// Once, of the first frame in which something is not to be seen.
+void Surfaces::warn_unseen() {
+  for (std::size_t i = 0; i < shapes_.size() && !warned_unseen_; ++i) {
+    const std::string why = shapes_[i]->why_unseen();
+    if (why.empty()) continue;
+    warned_unseen_ = true;
+    console_.warning(
+        fmt::format("nothing is seen of {}: {}", scene_.objects[i].shape.shape, why));
+  }
 }
 
 std::unique_ptr<SampleSource> Surfaces::samples(const ir::Module& module,

@@ -68,6 +68,7 @@ class Surfaces {
                     const RenderOptions& options, const Session& session);
   surface::Camera camera(const ImagePlane& plane, const surface::Scene& scene) const;
   void warn_inside(const surface::Camera& camera);
+  void warn_unseen();
   void begin_stored_frame();
 
   Console& console_;
@@ -90,7 +91,7 @@ class Surfaces {
   std::shared_ptr<const surface::Scene> placed_;  // of the frame
   std::unique_ptr<surface::Lens> lens_;
   std::vector<std::pair<std::string, std::string>> identities_;
-  bool warned_ = false;
+  bool warned_ = false, warned_unseen_ = false;
 
   // Of stored surfaces.
   InputImages* images_ = nullptr;

@@ -2,6 +2,7 @@
 // marched together, so that the function is asked for many points at once; where its sign changes,
 // the place is narrowed down by false position.
 #include <numbers>
+#include <sstream>
 
 #include "surface/shapes.h"
 
@@ -47,6 +48,15 @@ class Isosurface : public Shape {
       : field_(std::move(field)), level_(level), box_(box), step_(step) {}
   Box bounds() const override { return box_; }
 
+  // Asks at the corners of the box, then, where all of them are inside, at a lattice in it.
+  std::string why_unseen() const override {
+    if (!is_inside_at_lattice(1) || !is_inside_at_lattice(lattice)) return "";
+    std::ostringstream text;
+    text << "its function is above `level` " << level_
+         << " everywhere within `bounds`, so that no surface is there";
+    return text.str();
+  }
+
   void find(std::span<const Ray> rays, std::span<Meeting> meetings) const override {
     std::vector<March> found = march(rays);
     narrow(rays, found);
@@ -80,6 +90,22 @@ class Isosurface : public Shape {
   }
 
  private:
+  static constexpr int lattice = 32;  // cells along each side of the box
+
+  bool is_inside_at_lattice(int cells) const {
+    Points points;
+    const Vec3 size = box_.upper - box_.lower;
+    const auto part = [&](int i) { return double(i) / cells; };
+    for (int k = 0; k <= cells; ++k)
+      for (int j = 0; j <= cells; ++j)
+        for (int i = 0; i <= cells; ++i)
+          points.add(box_.lower + Vec3{part(i) * size.x, part(j) * size.y, part(k) * size.z});
+    points.ask(field_);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (!(points[i] > level_)) return false;
+    return true;
+  }
+
   // Steps until the sign changes or the box ends. The rays that found something, with a and b.
   std::vector<March> march(std::span<const Ray> rays) const {
     std::vector<March> active, found;

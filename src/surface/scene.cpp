@@ -2,6 +2,8 @@
 // met so far.
 #include "surface/scene.h"
 
+#include "surface/spot_lanes.h"
+
 namespace pse::surface {
 
 Vec3 light_value(const Light& light, LightPart part, const Vec3& place) {
@@ -26,13 +28,13 @@ Scene::Scene(std::vector<Object> objects, std::vector<Light> lights) : lights_(s
   for (Object& object : objects) {
     Placed placed;
     const Box own = object.shape->bounds();
-    placed.to_object = object.to_world.inverse();
+    placed.frame.to_object = object.to_world.inverse();
     const Affine& m = object.to_world;
-    placed.identity = m.x == Vec3{1, 0, 0} && m.y == Vec3{0, 1, 0} && m.z == Vec3{0, 0, 1} &&
-                      m.offset == Vec3{};
+    placed.frame.identity = m.x == Vec3{1, 0, 0} && m.y == Vec3{0, 1, 0} &&
+                            m.z == Vec3{0, 0, 1} && m.offset == Vec3{};
     constexpr double inf = Box::inf;
     placed.bounds = own.bounded() ? m.box(own) : Box{{-inf, -inf, -inf}, {inf, inf, inf}};
-    if (placed.identity) placed.bounds = own;
+    if (placed.frame.identity) placed.bounds = own;
     if (placed.bounds.bounded()) bounds_.add(placed.bounds);
     placed.object = std::move(object);
     const auto index = static_cast<std::uint32_t>(placed_.size());
@@ -55,14 +57,14 @@ bool is_usable(const Ray& ray) {
 }  // namespace
 
 Ray Scene::local(const Placed& placed, const Ray& ray) {
-  if (placed.identity) return ray;
-  return {placed.to_object.point(ray.origin), placed.to_object.vector(ray.direction), ray.begin,
-          ray.end};
+  const auto& [to_object, identity] = placed.frame;
+  if (identity) return ray;
+  return {to_object.point(ray.origin), to_object.vector(ray.direction), ray.begin, ray.end};
 }
 
 void Scene::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
   // One object that stands where it was made takes the rays as they are.
-  const bool direct = placed_.size() == 1 && placed_.front().identity &&
+  const bool direct = placed_.size() == 1 && placed_.front().frame.identity &&
                       std::all_of(rays.begin(), rays.end(), is_usable);
   if (!direct) return trace_many(rays, hits);
   thread_local std::vector<Meeting> meetings;
@@ -105,38 +107,41 @@ void Scene::trace_many(std::span<const Ray> rays, std::span<Hit> hits) const {
 
 void Scene::describe(std::span<const Ray> rays, std::span<const Hit> hits, bool with_uv,
                      std::span<Spot> spots) const {
-  thread_local std::vector<Ray> own;
-  thread_local std::vector<Meeting> meetings;
   thread_local std::vector<ShapePoint> points;
+  points.resize(hits.size());
   // Runs of hits on the same object.
   for (std::size_t begin = 0, end = 0; begin < hits.size(); begin = end) {
     const int object = hits[begin].object;
-    const Placed& placed = placed_[static_cast<std::size_t>(object)];
-    own.clear(), meetings.clear();
-    for (; end < hits.size() && hits[end].object == object; ++end) {
-      if (!placed.identity) own.push_back(local(placed, rays[end]));
-      meetings.push_back(hits[end].meeting);
-    }
-    points.resize(meetings.size());
-    placed.object.shape->describe(placed.identity ? rays.subspan(begin, end - begin) : own,
-                                  meetings, with_uv, points);
+    for (end = begin + 1; end < hits.size() && hits[end].object == object;) ++end;
+    const auto run = [&](const auto& all) { return all.subspan(begin, end - begin); };
+    describe_own(run(rays), run(hits), with_uv, run(std::span(points)));
     for (std::size_t i = begin; i < end; ++i)
-      place(placed, rays[i], hits[i].t(), points[i - begin], spots[i]);
+      place(placed_[static_cast<std::size_t>(object)].frame, rays[i], hits[i].t(), points[i],
+            spots[i]);
   }
 }
 
-void Scene::place(const Placed& placed, const Ray& ray, double t, const ShapePoint& seen,
+void Scene::describe_own(std::span<const Ray> rays, std::span<const Hit> hits, bool with_uv,
+                         std::span<ShapePoint> points) const {
+  thread_local std::vector<Ray> own;
+  thread_local std::vector<Meeting> meetings;
+  const Placed& placed = placed_[static_cast<std::size_t>(hits.front().object)];
+  own.clear(), meetings.clear();
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (!placed.frame.identity) own.push_back(local(placed, rays[i]));
+    meetings.push_back(hits[i].meeting);
+  }
+  placed.object.shape->describe(placed.frame.identity ? rays : own, meetings, with_uv, points);
+}
+
+void Scene::place(const Frame& frame, const Ray& ray, double t, const ShapePoint& shown,
                   Spot& spot) {
-  spot.place = ray.origin + t * ray.direction;
-  spot.point = placed.identity ? spot.place : placed.to_object.point(spot.place);
-  spot.u = seen.u, spot.v = seen.v;
-  const auto turned = [&](const Vec3& normal) {
-    return normalized(placed.identity ? normal : placed.to_object.transposed(normal));
-  };
-  spot.normal = turned(seen.normal);
-  spot.flat = seen.flat == seen.normal ? spot.normal : turned(seen.flat);
-  spot.back = dot(spot.flat, ray.direction) > 0;
-  if (spot.back) spot.normal = -spot.normal, spot.flat = -spot.flat;
+  const auto in = [](const Vec3& v) { return Vec<double>{v.x, v.y, v.z}; };
+  const auto out = [](const Vec<double>& v) { return Vec3{v.x, v.y, v.z}; };
+  const Seen<double> seen =
+      see(frame, in(ray.origin), in(ray.direction), t, in(shown.normal), in(shown.flat));
+  spot = {out(seen.place), out(seen.point), out(seen.normal), out(seen.flat),
+          shown.u,         shown.v,         seen.back};
 }
 
 std::vector<std::string> Scene::around(const Vec3& point) const {

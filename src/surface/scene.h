@@ -52,11 +52,7 @@ class Scene {
   const std::vector<Light>& lights() const { return lights_; }
   std::size_t objects() const { return placed_.size(); }
   const Object& object(std::size_t index) const { return placed_[index].object; }
-  const Affine& to_object(std::size_t index) const { return placed_[index].to_object; }
-  Vec3 vector_to_object(std::size_t index, const Vec3& v) const {
-    const Placed& placed = placed_[index];
-    return placed.identity ? v : placed.to_object.vector(v);
-  }
+  const Frame& frame(std::size_t index) const { return placed_[index].frame; }
   // Around all objects of finite size.
   const Box& bounds() const { return bounds_; }
   // A distance that is nothing in this scene: where rays from a surface may begin.
@@ -71,17 +67,19 @@ class Scene {
   // What is to be seen at hits that were found with these rays; u and v only where wanted.
   void describe(std::span<const Ray> rays, std::span<const Hit> hits, bool with_uv,
                 std::span<Spot> spots) const;
+  // What the surface of one object, in its own frame, is like at hits of that object.
+  void describe_own(std::span<const Ray> rays, std::span<const Hit> hits, bool with_uv,
+                    std::span<ShapePoint> points) const;
 
  private:
   struct Placed {
     Object object;
-    Affine to_object;
+    Frame frame;
     Box bounds;  // in the world
-    bool identity = false;
   };
   static Ray local(const Placed& placed, const Ray& ray);
   void trace_many(std::span<const Ray> rays, std::span<Hit> hits) const;
-  static void place(const Placed& placed, const Ray& ray, double t, const ShapePoint& seen,
+  static void place(const Frame& frame, const Ray& ray, double t, const ShapePoint& shown,
                     Spot& spot);
 
   std::vector<Placed> placed_;

@@ -39,12 +39,41 @@ class CurrentRun {
   const RunStatus* before_;
 };
 
+// Samples side by side that one program shades.
+struct Row {
+  std::int64_t first, count;
+};
+
+// Short rows are copied here: a call costs as much as they do.
+void copy_row(const float* from, std::int64_t count, float* to) {
+  if (count >= 32) {
+    std::copy_n(from, count, to);
+    return;
+  }
+  for (std::int64_t i = 0; i < count; ++i) to[i] = from[i];
+}
+
+std::int64_t size_of(const std::vector<Row>& rows) {
+  std::int64_t count = 0;
+  for (const Row& row : rows) count += row.count;
+  return count;
+}
+
+// The sample that is the `index`-th of all in the rows, or the last.
+std::int64_t sample_at(const std::vector<Row>& rows, std::int64_t index) {
+  for (const Row& row : rows) {
+    if (index < row.count) return row.first + index;
+    index -= row.count;
+  }
+  return rows.back().first + rows.back().count - 1;
+}
+
 }  // namespace
 
 // What a thread keeps from one call of run_samples() to the next: fresh memory costs as much as
 // tracing rays. A program that traces comes back to run_samples() within a call, and finds another.
 struct Shader::Room {
-  std::vector<std::vector<std::uint32_t>> of_part;  // the samples that each program shades
+  std::vector<std::vector<Row>> of_part;  // the samples that each program shades
   std::vector<bool> gathers, results_used;
   std::vector<const float*> in;
   std::vector<float*> out;
@@ -209,13 +238,13 @@ void Shader::run_samples(const FrameState&, RunStatus& status, Scratch&, const f
   const Room::Held held;
   Room& room = *held;
   if (room.of_part.size() < parts_.size()) room.of_part.resize(parts_.size());
-  for (auto& samples : room.of_part) samples.clear();
+  for (auto& rows : room.of_part) rows.clear();
   const auto last = static_cast<float>(program_of_.size() - 1);
-  for (std::int64_t i = 0; i < count; ++i) {
+  for (std::int64_t i = 0, end = 0; i < count; i = end) {
     const float id = ids[i];
+    for (end = i + 1; end < count && ids[end] == id;) ++end;
     const int part = id >= 0 ? program_of_[static_cast<std::size_t>(std::min(id, last))] : -1;
-    if (part >= 0)
-      room.of_part[static_cast<std::size_t>(part)].push_back(static_cast<std::uint32_t>(i));
+    if (part >= 0) room.of_part[static_cast<std::size_t>(part)].push_back({i, end - i});
   }
   for (std::size_t o = 0; o < split_->module.outputs.size(); ++o)
     std::fill_n(outputs[o], count, 0.0f);
@@ -233,9 +262,9 @@ void Shader::run_part(std::size_t k, RunStatus& status, const float* const* inpu
                       float* const* outputs, std::int64_t count, Room& room) const {
   const Part& part = parts_[k];
   const ir::Module& module = part.program->module();
-  const std::vector<std::uint32_t>& which = room.of_part[k];
-  const bool all = std::cmp_equal(which.size(), count);
-  const auto samples = static_cast<std::int64_t>(which.size());
+  const std::vector<Row>& rows = room.of_part[k];
+  const std::int64_t samples = size_of(rows);
+  const bool all = samples == count;
 
   // Gather.
   room.gathers.assign(module.inputs.size(), false);
@@ -249,8 +278,8 @@ void Shader::run_part(std::size_t k, RunStatus& status, const float* const* inpu
     room.in[i] = from;
     if (all) continue;
     float* to = room.gathered.pointers()[i];
-    for (std::size_t s = 0; s < which.size(); ++s) to[s] = from[which[s]];
     room.in[i] = to;
+    for (const Row& row : rows) copy_row(from + row.first, row.count, to), to += row.count;
   }
 
   // Run.
@@ -260,17 +289,20 @@ void Shader::run_part(std::size_t k, RunStatus& status, const float* const* inpu
                                     room.results.pointers().data(), samples);
   if (status.failed_check >= 0) {
     status.failed_check += part.first_check;
-    status.failed_sample = which[std::min<std::size_t>(status.failed_sample, which.size() - 1)];
+    status.failed_sample =
+        static_cast<std::uint32_t>(sample_at(rows, std::int64_t{status.failed_sample}));
     return;
   }
 
   // Scatter.
   for (std::size_t o = 0; o < module.outputs.size(); ++o)
-    for (const std::size_t to : part.outputs_of[o])
-      for (std::size_t s = 0; s < which.size(); ++s)
-        outputs[to][which[s]] = room.results.pointers()[o][s];
+    for (const std::size_t to : part.outputs_of[o]) {
+      const float* from = room.results.pointers()[o];
+      for (const Row& row : rows)
+        copy_row(from, row.count, outputs[to] + row.first), from += row.count;
+    }
   if (!part.sets_alpha)
-    for (const std::uint32_t s : which) outputs[alpha_output_][s] = 1;
+    for (const Row& row : rows) std::fill_n(outputs[alpha_output_] + row.first, row.count, 1.0f);
 }
 
 void Shader::radiance(std::span<const Ray> rays, double begin_width, float* const* rgba) const {

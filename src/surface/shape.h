@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "surface/vec.h"
@@ -56,6 +57,9 @@ class Shape {
   // wanted, since they may cost as much as all the rest.
   virtual void describe(std::span<const Ray> rays, std::span<const Meeting> meetings, bool with_uv,
                         std::span<ShapePoint> points) const = 0;
+  // Why nobody will see the shape, as a sentence; empty where it may be seen. May take as long as
+  // many rays.
+  virtual std::string why_unseen() const { return ""; }
 };
 
 // A shape that is met ray by ray.

@@ -17,7 +17,7 @@ using Values = std::map<std::string, std::vector<double>>;
 struct Parameter {
   const char* name;
   std::vector<double> usual;
-  double least;  // smaller is refused
+  double least, most = std::numeric_limits<double>::infinity();  // what is beyond is refused
   bool any_length = false;
 };
 struct Kind {
@@ -52,14 +52,13 @@ const std::vector<Kind>& kinds() {
       {"plane", {{"size", {inf}, tiny}},
        [](const Values& v) { return make_plane(one(v, "size")); }},
       {"superquadric",
-       {{"size", {1, 1, 1}, tiny}, {"north", {0.5}, 0.05}, {"east", {0.5}, 0.05}},
+       {{"size", {1, 1, 1}, tiny}, {"north", {0.5}, 0.05, 4}, {"east", {0.5}, 0.05, 4}},
        [](const Values& v) {
-         return make_superquadric(three(v, "size"), std::min(one(v, "north"), 4.0),
-                                  std::min(one(v, "east"), 4.0));
+         return make_superquadric(three(v, "size"), one(v, "north"), one(v, "east"));
        }},
       {"vase", {}, [](const Values&) { return make_revolution(vase_profile(), false); }},
       {"revolution",
-       {{"profile", {0.5, -1, 0.9, 0, 0.4, 1}, -inf, true}, {"caps", {0}, 0}},
+       {{"profile", {0.5, -1, 0.9, 0, 0.4, 1}, -inf, inf, true}, {"caps", {0}, 0}},
        [](const Values& v) {
          return make_revolution(profile_of(v.at("profile")), one(v, "caps") != 0);
        }}};
@@ -78,6 +77,17 @@ const Kind& field_kind() {
   static const Kind kind = {
       "an isosurface", {{"level", {0.5}, -inf}, {"bounds", {1.5, 1.5, 1.5}, tiny}, {"step", {0}, 0}}, {}};
   return kind;
+}
+
+std::string text_of(double number) {
+  std::ostringstream text;
+  text << number;
+  return text.str();
+}
+
+std::string range_of(const Parameter& parameter) {
+  const std::string from = "from " + text_of(parameter.least);
+  return parameter.most < inf ? from + " to " + text_of(parameter.most) : from + " up";
 }
 
 ShapeError unknown_setting(const Setting& setting, const std::string& shape,
@@ -116,9 +126,11 @@ std::expected<Values, ShapeError> values_of(const Kind& kind, const ShapeSpec& s
                                     (usual == 1 ? " number" : " numbers")),
                      "", setting.line, true});
     for (const double number : setting.numbers)
-      if (!(number >= parameter->least) || std::isnan(number))
-        return std::unexpected(ShapeError{"`" + setting.key + "` of " + kind.name + " is too small",
-                                          "", setting.line, true});
+      if (!(number >= parameter->least && number <= parameter->most))
+        return std::unexpected(ShapeError{
+            "`" + setting.key + "` of " + kind.name + " is " + text_of(number) + ", and goes " +
+                range_of(*parameter),
+            "", setting.line, true});
     values[setting.key] = setting.numbers;
   }
   return values;
@@ -188,11 +200,8 @@ std::vector<std::pair<std::string, std::string>> shape_names() {
     std::string text;
     for (const Parameter& parameter : kind.parameters) {
       text += (text.empty() ? "" : " ") + std::string(parameter.name) + "=";
-      for (std::size_t i = 0; i < parameter.usual.size(); ++i) {
-        std::ostringstream number;
-        number << parameter.usual[i];
-        text += (i == 0 ? "" : ",") + number.str();
-      }
+      for (std::size_t i = 0; i < parameter.usual.size(); ++i)
+        text += (i == 0 ? "" : ",") + text_of(parameter.usual[i]);
     }
     names.emplace_back(kind.name, text);
   }

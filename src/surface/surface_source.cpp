@@ -10,12 +10,16 @@ namespace {
 
 constexpr double far_away = 1e10;  // depth where nothing is, as other renderers write it
 
-Vec3 rounded(const Vec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
 Vec3 axis(const Affine& map, int which) {
   return normalized(which == 0 ? map.x : which == 1 ? map.y : map.z);
+}
+
+LightPart part_of(What light) {
+  using enum What;
+  return light == light_direction  ? LightPart::direction
+         : light == light_color    ? LightPart::color
+         : light == light_position ? LightPart::position
+                                   : LightPart::radius;
 }
 
 std::string light_name(std::size_t light, const char* what) {
@@ -90,128 +94,38 @@ NameWriter::NameWriter(const ir::Module& module, std::shared_ptr<const Scene> sc
       };
       using enum What;
       if (one_of({uv})) wants_uv_ = true;
-      if (one_of({pixelsize, pixel_freq, dpdx, dpdy})) wants_shifts_ = true;
+      if (one_of({pixelsize, pixel_freq, dpdx, dpdy, place_dx, place_dy})) wants_shifts_ = true;
       if (!one_of({id, depth, hit, view, origin, direction, axis_x, axis_y, axis_z}))
         wants_spots_ = true;
     }
   }
 }
 
-// How the place on the surface moves when the place in the picture moves by one pixel along `axis`:
-// the step across the ray, carried along the ray onto the tangent plane.
-Vec3 NameWriter::world_shift(const Shown& s, const Vec3& axis) {
-  const Vec3& d = s.ray->direction;
-  const Vec3 step = s.sighting->width * normalized(axis - dot(axis, d) * d);
-  const double facing = std::min(dot(s.spot->flat, d), -0.001);
-  return step - (dot(s.spot->flat, step) / facing) * d;
+// Whether it is another one at each place.
+bool NameWriter::follows_place(const Wanted& wanted) const {
+  using enum What;
+  if (wanted.what < light_direction || wanted.what == light_radius) return false;
+  return wanted.what == light_position || scene_->lights()[wanted.light].is_lamp;
 }
 
-namespace {
-
-// Two numbers and two vectors side by side: what every processor does at once.
-using Pair [[gnu::vector_size(16)]] = double;
-struct Vec3s {
-  Pair x, y, z;
-};
-Vec3s operator-(const Vec3s& a, const Vec3s& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vec3s operator*(Pair s, const Vec3s& a) { return {s * a.x, s * a.y, s * a.z}; }
-Pair dot(const Vec3s& a, const Vec3s& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec3s both(const Vec3& a, const Vec3& b) {
-  return {Pair{a.x, b.x}, Pair{a.y, b.y}, Pair{a.z, b.z}};
-}
-
-}  // namespace
-
-// The same of many, with the same bits, in their objects' frames.
-void NameWriter::set_shifts(std::span<Shown> shown) const {
-  for (std::size_t k = 0; k < shown.size(); k += 2) {
-    Shown &one = shown[k], &other = shown[std::min(k + 1, shown.size() - 1)];
-    const Vec3s d = both(one.ray->direction, other.ray->direction),
-                flat = both(one.spot->flat, other.spot->flat);
-    const Pair width{one.sighting->width, other.sighting->width}, zero{};
-    const Pair slope = dot(flat, d), facing = slope < -0.001 ? slope : zero - 0.001;
-    for (Vec3 Shown::*shift : {&Shown::dx, &Shown::dy}) {
-      const Vec3& axis = shift == &Shown::dx ? right_ : up_;
-      const Vec3s along = both(axis, axis), across = along - dot(along, d) * d;
-      const Pair square = dot(across, across);
-      const Pair size{std::sqrt(square[0]), std::sqrt(square[1])};
-      const Vec3s step = width * ((size > 0 ? 1 / size : zero + 1) * across);
-      const Vec3s moved = step - (dot(flat, step) / facing) * d;
-      const auto put = [&](Shown& s, const Vec3& v) {
-        if (s.object >= 0)
-          s.*shift = scene_->vector_to_object(static_cast<std::size_t>(s.object), v);
-      };
-      put(one, {moved.x[0], moved.y[0], moved.z[0]});
-      put(other, {moved.x[1], moved.y[1], moved.z[1]});
-    }
-  }
-}
-
-void NameWriter::write_one(const Wanted& wanted, std::span<const Shown> shown,
-                           const Outs& outs) const {
-  const auto all = [&](const auto& value) {
-    const bool complete = outs[0] != nullptr && outs[1] != nullptr && outs[2] != nullptr;
-    for (const Shown& s : shown) {
-      const Vec3& v = value(s);
-      const std::uint32_t i = s.sighting->sample;
-      if (complete || outs[0] != nullptr) outs[0][i] = static_cast<float>(v.x);
-      if (complete || outs[1] != nullptr) outs[1][i] = static_cast<float>(v.y);
-      if (complete || outs[2] != nullptr) outs[2][i] = static_cast<float>(v.z);
-    }
-  };
-  const auto one = [&](const auto& value) {
-    for (const Shown& s : shown) outs[0][s.sighting->sample] = static_cast<float>(value(s));
-  };
-  const auto axes = [&](int which) {
-    all([&](const Shown& s) {
-      const Vec3 unit{which == 0 ? 1.0 : 0, which == 1 ? 1.0 : 0, which == 2 ? 1.0 : 0};
-      if (s.object < 0) return unit;
-      return axis(scene_->object(static_cast<std::size_t>(s.object)).to_world, which);
-    });
-  };
-  // From the place as it is stored, so that a G-buffer gives the same.
-  const auto lit = [&](LightPart part) {
-    const Light& light = scene_->lights()[wanted.light];
-    const bool same = !light.is_lamp && part != LightPart::position;
-    const Vec3 everywhere = light_value(light, part, {});
-    all([&](const Shown& s) {
-      return same ? everywhere : light_value(light, part, rounded(s.spot->place));
-    });
-  };
-  // The side of a square as large as the pixel's image on the surface.
-  const auto size = [](const Shown& s) {
-    return s.object < 0 ? s.sighting->width : std::sqrt(length(cross(s.dx, s.dy)));
+// What all samples have that show an object, or the background (-1).
+double NameWriter::number(const Wanted& wanted, int object) const {
+  using enum What;
+  const auto of_axis = [&](int which) {
+    const Vec3 unit{which == 0 ? 1.0 : 0, which == 1 ? 1.0 : 0, which == 2 ? 1.0 : 0};
+    if (object < 0) return unit[wanted.component];
+    const Affine& map = scene_->object(static_cast<std::size_t>(object)).to_world;
+    return axis(map, which)[wanted.component];
   };
   switch (wanted.what) {
-    case What::point: return all([](const Shown& s) { return s.spot->point; });
-    case What::place: return all([](const Shown& s) { return s.spot->place; });
-    case What::normal: return all([](const Shown& s) { return s.spot->normal; });
-    case What::flat_normal: return all([](const Shown& s) { return s.spot->flat; });
-    case What::uv: return all([](const Shown& s) { return Vec3{s.spot->u, s.spot->v, 0}; });
-    case What::id: return one([](const Shown& s) { return s.object + 1.0; });
-    case What::depth:
-      return one([](const Shown& s) { return s.object < 0 ? far_away : s.sighting->depth; });
-    case What::hit: return one([](const Shown& s) { return s.object < 0 ? 0.0 : 1.0; });
-    case What::backface: return one([](const Shown& s) { return s.spot->back ? 1.0 : 0.0; });
-    case What::view: return all([](const Shown& s) { return -s.ray->direction; });
-    case What::origin: return all([](const Shown& s) { return s.ray->origin; });
-    case What::direction: return all([](const Shown& s) { return s.ray->direction; });
-    case What::pixelsize: return one(size);
-    case What::pixel_freq:
-      return one([&](const Shown& s) { return 0.5 / static_cast<float>(size(s)); });
-    case What::dpdx: return all([](const Shown& s) { return s.dx; });
-    case What::dpdy: return all([](const Shown& s) { return -s.dy; });
-    case What::place_dx:
-      return all([&](const Shown& s) { return s.object < 0 ? Vec3{} : world_shift(s, right_); });
-    case What::place_dy:
-      return all([&](const Shown& s) { return s.object < 0 ? Vec3{} : -world_shift(s, up_); });
-    case What::axis_x: return axes(0);
-    case What::axis_y: return axes(1);
-    case What::axis_z: return axes(2);
-    case What::light_direction: return lit(LightPart::direction);
-    case What::light_color: return lit(LightPart::color);
-    case What::light_position: return lit(LightPart::position);
-    case What::light_radius: return lit(LightPart::radius);
+    case id: return object + 1.0;
+    case hit: return object < 0 ? 0 : 1;
+    case axis_x: return of_axis(0);
+    case axis_y: return of_axis(1);
+    case axis_z: return of_axis(2);
+    default:
+      return light_value(scene_->lights()[wanted.light], part_of(wanted.what),
+                         {})[wanted.component];
   }
 }
 
@@ -223,39 +137,66 @@ void NameWriter::begin(std::size_t count, std::span<float* const> planes) const 
 
 void NameWriter::write(std::span<const Sighting> sightings, std::span<const Ray> rays,
                        std::span<const Hit> hits, std::span<float* const> planes) const {
-  // What objects look like; the background looks like nothing.
-  thread_local std::vector<Shown> shown;
-  thread_local std::vector<Ray> object_rays;
-  thread_local std::vector<Hit> object_hits;
-  thread_local std::vector<Spot> spots;
-  spots.resize(hits.size());
-  if (wants_spots_ && std::ranges::all_of(hits, &Hit::found)) {
-    scene_->describe(rays, hits, wants_uv_, spots);
-  } else if (wants_spots_) {
-    object_rays.clear(), object_hits.clear();
-    for (std::size_t k = 0; k < hits.size(); ++k)
-      if (hits[k].found()) object_rays.push_back(rays[k]), object_hits.push_back(hits[k]);
-    scene_->describe(object_rays, object_hits, wants_uv_, spots);
+  for (std::size_t begin = 0, end = 0; begin < hits.size(); begin = end) {
+    for (end = begin + 1; end < hits.size() && hits[end].object == hits[begin].object;) ++end;
+    const std::size_t count = end - begin;
+    write_run(sightings.subspan(begin, count), rays.subspan(begin, count),
+              hits.subspan(begin, count), planes);
   }
-  static const Spot nothing;
-  const Spot* next = spots.data();
-  shown.resize(hits.size());
-  for (std::size_t k = 0; k < hits.size(); ++k)
-    shown[k] = {&sightings[k], &rays[k], hits[k].found() ? next++ : &nothing, hits[k].object, {}, {}};
-  if (wants_shifts_) set_shifts(shown);
+}
 
-  // The components of a vector stand side by side and are computed once.
-  for (std::size_t k = 0; k < wanted_.size(); ++k) {
-    const Wanted& wanted = wanted_[k];
-    Outs outs{};
-    outs[static_cast<std::size_t>(wanted.component)] = planes[wanted.input];
-    while (k + 1 < wanted_.size() && wanted_[k + 1].what == wanted.what &&
-           wanted_[k + 1].light == wanted.light &&
-           outs[static_cast<std::size_t>(wanted_[k + 1].component)] == nullptr) {
-      ++k;
-      outs[static_cast<std::size_t>(wanted_[k].component)] = planes[wanted_[k].input];
+void NameWriter::write_run(std::span<const Sighting> sightings, std::span<const Ray> rays,
+                           std::span<const Hit> hits, std::span<float* const> planes) const {
+  thread_local std::vector<ShapePoint> points;
+  thread_local std::vector<NameStore> stores;
+  thread_local std::array<std::vector<float>, 3> places;
+  const int object = hits.front().object;
+  NameValues values{.count = hits.size(), .sightings = sightings.data(), .rays = rays.data(),
+                    .hits = hits.data(), .points = nullptr, .frame = {}, .right = right_,
+                    .up = up_, .wants_shifts = wants_shifts_, .is_background = object < 0,
+                    .stores = nullptr, .store_count = 0, .places = {}};
+  if (object >= 0) values.frame = scene_->frame(static_cast<std::size_t>(object));
+  if (object >= 0 && wants_spots_) {
+    points.resize(hits.size());
+    scene_->describe_own(rays, hits, wants_uv_, points);
+    values.points = points.data();
+  }
+
+  // What goes where.
+  stores.clear();
+  bool wants_places = false;
+  for (const Wanted& wanted : wanted_) {
+    float* out = planes[wanted.input];
+    if (out == nullptr) continue;
+    if (follows_place(wanted)) {
+      wants_places = true;
+      continue;
     }
-    if (outs != Outs{}) write_one(wanted, shown, outs);
+    const bool computed = wanted.what < What::id;
+    NameStore store{out, wanted.what, wanted.component, 0};
+    if (!computed) store.number = static_cast<float>(number(wanted, object));
+    if (wanted.what == What::depth && object < 0)
+      store.what = What::id, store.number = static_cast<float>(far_away);
+    stores.push_back(store);
+  }
+  values.stores = stores.data(), values.store_count = stores.size();
+  if (wants_places)
+    for (std::size_t c = 0; c < 3; ++c)
+      places[c].resize(hits.size()), values.places[c] = places[c].data();
+  function_(values);
+  if (!wants_places) return;
+
+  // Lights, from the places as they are stored, so that a G-buffer gives the same.
+  for (const Wanted& wanted : wanted_) {
+    float* out = planes[wanted.input];
+    if (out == nullptr || !follows_place(wanted)) continue;
+    const LightPart part = part_of(wanted.what);
+    const Light& light = scene_->lights()[wanted.light];
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+      const Vec3 place{places[0][k], places[1][k], places[2][k]};
+      out[sightings[k].sample] =
+          static_cast<float>(light_value(light, part, place)[wanted.component]);
+    }
   }
 }
 

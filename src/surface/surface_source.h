@@ -9,19 +9,13 @@
 #include "stream/image_plane.h"
 #include "stream/sample_source.h"
 #include "surface/cover.h"
+#include "surface/name_values.h"
 
 namespace pse::surface {
 
 // `lights`: how many the scene has; the first is `light_direction` and so on, the second
 // `light2_direction`.
 std::vector<StreamName> surface_names(std::size_t lights);
-
-// A sample that sends a ray, and how wide a pixel is where that meets something.
-struct Sighting {
-  std::uint32_t sample = 0;  // its index in the planes
-  double width = 0;  // of a pixel across the ray, metres
-  double depth = 0;
-};
 
 // Writes names of sightings into the sample-rate inputs of a module.
 class NameWriter {
@@ -42,19 +36,6 @@ class NameWriter {
              std::span<const Hit> hits, std::span<float* const> planes) const;
 
  private:
-  // What a sample shows: a sighting with its spot, and how `point` moves from pixel to pixel.
-  struct Shown {
-    const Sighting* sighting;
-    const Ray* ray;
-    const Spot* spot;
-    int object;
-    Vec3 dx, dy;  // where wanted
-  };
-  enum class What {
-    point, place, normal, flat_normal, uv, id, depth, hit, backface, view, origin, direction,
-    pixelsize, pixel_freq, dpdx, dpdy, place_dx, place_dy, axis_x, axis_y, axis_z,
-    light_direction, light_color, light_position, light_radius
-  };
   struct Wanted {
     std::size_t input;
     What what;
@@ -62,16 +43,17 @@ class NameWriter {
     std::size_t light;
   };
   static std::optional<Wanted> find(const std::string& name, std::size_t lights);
-  // The planes of a vector's components, or of a number; null where not wanted.
-  using Outs = std::array<float*, 3>;
-  void write_one(const Wanted& wanted, std::span<const Shown> shown, const Outs& outs) const;
-  static Vec3 world_shift(const Shown& s, const Vec3& axis);
-  void set_shifts(std::span<Shown> shown) const;
+  // Of samples that show one object, or the background.
+  void write_run(std::span<const Sighting> sightings, std::span<const Ray> rays,
+                 std::span<const Hit> hits, std::span<float* const> planes) const;
+  double number(const Wanted& wanted, int object) const;
+  bool follows_place(const Wanted& wanted) const;
 
   std::shared_ptr<const Scene> scene_;
   Vec3 right_, up_;
   std::vector<Wanted> wanted_;
   bool wants_shifts_ = false, wants_spots_ = false, wants_uv_ = false;
+  NameFunction function_ = name_function();
 };
 
 // Sets the frame-rate inputs that a scene brings: eye, light_count.

@@ -96,4 +96,10 @@ struct Affine {
   }
 };
 
+// From the world to where an object was made.
+struct Frame {
+  Affine to_object;
+  bool identity = false;  // it stands where it was made
+};
+
 }  // namespace pse::surface

@@ -203,6 +203,7 @@ TEST_F(Surfaces, WrongWordsAreRefused) {
   file("p.pse", "color = white\n");
   for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
            {"--on", "spher"}, {"--on", "sphere radius=0"}, {"--on", "torus minor=a"},
+           {"--on", "superquadric north=1e9"},
            {"--on", "sphere", "--camera", "eye=1,2"}, {"--camera", "eye=1,2,3"}}) {
     std::vector<std::string> arguments = {"render", "p.pse", "-o", "x.png"};
     arguments.insert(arguments.end(), options.begin(), options.end());
@@ -214,6 +215,18 @@ TEST_F(Surfaces, WrongWordsAreRefused) {
   EXPECT_TRUE(contains(ended.err, "there is no scene"));
   file("broken.obj", "nothing\n");
   EXPECT_EQ(pse({"render", "p.pse", "--on", "broken.obj", "-o", "x.png"}).status, 4);
+}
+
+TEST_F(Surfaces, AnIsosurfaceAroundAllOfItsBoxIsTold) {
+  file("p.pse", "color = white\n");
+  file("blob.pse", "density = 4 - norm(point)\n");
+  const auto told = [&](const std::string& on) {
+    const Ended ended = pse({"render", "p.pse", "--on", on, "--res", "9x9", "-o", "o.exr"});
+    EXPECT_EQ(ended.status, 0);
+    return ended.err;
+  };
+  EXPECT_TRUE(contains(told("blob.pse"), "is above `level` 0.5 everywhere"));
+  EXPECT_EQ(told("blob.pse level=2").find("nothing is seen"), std::string::npos);
 }
 
 TEST_F(Surfaces, ACameraInsideAnObjectIsTold) {

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "rays.h"
-#include "surface/shapes.h"
+#include "surface/shape_words.h"
 
 namespace pse::surface {
 namespace {
@@ -184,6 +184,49 @@ TEST(Shapes, AnIsosurfaceIsTheShapeOfItsFunction) {
   }
   EXPECT_GT(both, 1000);
   EXPECT_LT(one, both / 50);
+}
+
+// A ball of radius 1.6, in boxes that lie within it, at its edge and around it.
+TEST(Shapes, AnIsosurfaceAroundAllOfItsBoxSaysThatItIsUnseen) {
+  const Field ball = [](std::int64_t count, const float* x, const float* y, const float* z,
+                        float* values) {
+    for (std::int64_t i = 0; i < count; ++i) values[i] = 1.6f - std::hypot(x[i], y[i], z[i]);
+  };
+  const auto why = [&](const Field& f, double level, double half) {
+    const Vec3 corner{half, half, half};
+    return make_isosurface(f, level, {-corner, corner}, 0.02)->why_unseen();
+  };
+  EXPECT_NE(why(ball, 0, 0.9).find("above `level` 0 everywhere"), std::string::npos);
+  EXPECT_EQ(why(ball, 0, 0.95), "");  // its corners are 1.645 from the centre
+  EXPECT_EQ(why(ball, 0.7, 0.9), "");
+  EXPECT_EQ(why(ball, 0, 2), "");
+  // A bubble within it is seen.
+  const Field hollow = [](std::int64_t count, const float* x, const float* y, const float* z,
+                          float* values) {
+    for (std::int64_t i = 0; i < count; ++i)
+      values[i] = std::hypot(x[i] - 0.2f, y[i], z[i]) - 0.3f;
+  };
+  EXPECT_EQ(why(hollow, 0, 0.9), "");
+  EXPECT_EQ(make_sphere(1)->why_unseen(), "");
+}
+
+// Settings beyond their range are refused and say it; at its ends they are taken.
+TEST(Shapes, SettingsHaveRanges) {
+  const auto error = [](const std::string& words) {
+    const auto made = make_shape(*parse_shape(words), true);
+    return made ? "" : made.error().message;
+  };
+  EXPECT_EQ(error("superquadric north=1e9"),
+            "`north` of superquadric is 1e+09, and goes from 0.05 to 4");
+  EXPECT_EQ(error("superquadric east=4.01"),
+            "`east` of superquadric is 4.01, and goes from 0.05 to 4");
+  EXPECT_EQ(error("superquadric north=0.04"),
+            "`north` of superquadric is 0.04, and goes from 0.05 to 4");
+  EXPECT_EQ(error("superquadric north=nan"),
+            "`north` of superquadric is nan, and goes from 0.05 to 4");
+  EXPECT_EQ(error("superquadric north=4 east=0.05"), "");
+  EXPECT_EQ(error("sphere radius=0"), "`radius` of sphere is 0, and goes from 1e-06 up");
+  EXPECT_EQ(error("sphere radius=1e9"), "");
 }
 
 }  // namespace

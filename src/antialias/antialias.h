@@ -2,7 +2,8 @@
 // run over a picture with clean edges at about one sample per pixel. The table of contents:
 //
 //   decisions  where the program's conditionals are
-//   path       the program with one more output: which way each sample takes
+//   path       the program with one more output: which way each sample takes; and where it marches
+//              by a loop, one of what that ended with
 //   derive     the program that gives the edges around a sample (rules, activity, rotate,
 //              edge_state)
 //   programs   compiling both
@@ -34,8 +35,8 @@ struct Host {
 
 // As pse::execute() of programs.shown, whose state the host makes; `source` fills the tiles of
 // `options.window` and, where samples are known anywhere, up to 2 pixels around it. The sink gets
-// the planes of the program's own outputs, then one without meaning where there are paths. The
-// result does not depend on tile size, threads or vector width.
+// the planes of the program's own outputs, then one or two without meaning where there are paths.
+// The result does not depend on tile size, threads or vector width.
 RunResult execute(const Programs& programs, const Host& host, const Options& antialias,
                   const TileSource& source, const TileSink& sink, const ExecuteOptions& options,
                   RunStatus& status, Counts& counts);

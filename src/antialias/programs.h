@@ -23,7 +23,7 @@ struct Options {
 };
 
 struct Programs {
-  // The program. With paths, its last output is "$path", behind `outputs` of its own.
+  // The program. With paths, "$path" and what else path.h adds stand behind `outputs` of its own.
   std::shared_ptr<const Program> shown;
   // The same without checks: for samples at places that the user has not asked for.
   std::shared_ptr<const Program> quiet;

@@ -88,6 +88,9 @@ const std::vector<std::pair<const char*, const char*>> programs = {
     // Towards the horizon whole squares lie between two samples.
     {"horizon", "h = 0.35 - y\nc = 0.5\nif h > 0\n    d = 0.5 / h\n    s = floor(0.9 * x * d + 0.4 * d) + "
                 "floor(0.9 * d - 0.4 * x * d)\n    c = mix(mod(s, 2), 0.5, 1 - exp(-0.04 * d))\n"},
+    {"march", "function ball(p)\n    return norm(p - [0 0 3]) - 0.8\nt = 1\nd = direction([x y 3])\n"
+              "for i in [1 .. 60]\n    s = ball(t * d)\n    t += s\n    if s < 0.0005 or t > 5 break\n"
+              "c = t > 5 ? 0.1 : 1.6 - 0.4 * t\nif t < 5 and sin(9 * t * d.x) > 0\n    c += 0.3\n"},
     {"pow", "c = select(pow(abs(x), 2.5) + pow(abs(y), 2.5) < 0.5, 1, 0)\n"},
 };
 

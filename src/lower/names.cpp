@@ -39,7 +39,7 @@ Typed Lowering::lower_name(const std::string& name, const Span& span) {
       hint = "an image brings `" + brought.name + "`";
   if (hint.empty()) hint = source_of(name);
   if (hint.empty() && ever_set_at_top_.contains(name))
-    hint = "it is set further down; set it before it is read";
+    hint = "it is set further down, or for the turns of a loop alone; set it before it is read";
   if (hint.empty()) hint = did_you_mean(name, visible_names());
   if (hint.empty()) {
     std::string names;

@@ -18,6 +18,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(pse_settings INTERFACE -fno-tree-slp-vectorize -Wno-missing-field-initializers -Wno-maybe-uninitialized -Wno-stringop-overflow -Wno-array-bounds
                          -Wno-restrict -Wno-dangling-pointer)
 endif()
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # A source's own types are not those of an included file, though it is included here.
+  target_compile_options(pse_settings INTERFACE -Wno-subobject-linkage)
+endif()
 if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   # Only the fuzz targets are built with clang, whose warnings are not g++'s.
   target_compile_options(pse_settings INTERFACE -Wno-error)

@@ -123,7 +123,7 @@ TEST_F(Lookup, FilesCutAnywhereAreRefused) {
 
 TEST_F(Lookup, DamageIsToldWithPlaceAndRemedy) {
   make_ramp();
-  // A type that no tree has, in the list of grids; then bytes among the voxels of the only grid.
+  // A type that no tree has, in the list of grids; then the middle of the only grid.
   std::string head = read("ramp.vdb");
   head[head.find("Tree_float") + 5] = 'q';
   file("head.vdb", head);
@@ -136,11 +136,12 @@ TEST_F(Lookup, DamageIsToldWithPlaceAndRemedy) {
   file("one.pse", "density = 8 + unoise(5 * point)\n");
   ASSERT_EQ(pse({"bake", "one.pse", "-o", "one.vdb", "--res", "32"}).status, 0);
   std::string voxels = read("one.vdb");
-  for (std::size_t at = voxels.size() / 2; at < voxels.size() * 3 / 4; at += 8) voxels[at] ^= 0x55;
+  // Pieces that say they have no length.
+  const std::size_t from = voxels.size() * 6 / 10, to = voxels.size() * 3 / 4;
+  std::fill(voxels.begin() + std::ptrdiff_t(from), voxels.begin() + std::ptrdiff_t(to), '\0');
   file("voxels.vdb", voxels);
   const std::string second = error_of("a = volume(\"voxels.vdb\", point)\n", 4);
-  EXPECT_TRUE(contains(second, "voxels.vdb is damaged or cut off: grid `density` cannot be read") ||
-              contains(second, "not enough memory to read voxels.vdb"))
+  EXPECT_TRUE(contains(second, "voxels.vdb is damaged or cut off: grid `density` cannot be read"))
       << second;
   EXPECT_TRUE(contains(second, "a.pse:1:5")) << second;
   EXPECT_TRUE(contains(second, "    ^~~~")) << second;

@@ -71,17 +71,32 @@ template <class V>
   return which ? yes : no;
 }
 
+// All lanes' bits together.
+template <class A>
+[[gnu::always_inline]] inline std::int64_t together(A lanes) {
+  using Halves = typename LanesOf<lanes_of<A>>::Halves;
+  Halves all = __builtin_bit_cast(Halves, lanes);
+  // Halves onto halves, until there are two.
+  if constexpr (sizeof(A) == 8 * sizeof(std::int64_t))
+    all |= __builtin_shufflevector(all, all, 4, 5, 6, 7, 0, 1, 2, 3);
+  if constexpr (sizeof(A) == 8 * sizeof(std::int64_t))
+    all |= __builtin_shufflevector(all, all, 2, 3, 0, 1, 6, 7, 4, 5);
+  else if constexpr (sizeof(A) == 4 * sizeof(std::int64_t))
+    all |= __builtin_shufflevector(all, all, 2, 3, 0, 1);
+  return all[0] | all[1];
+}
 // Whether there is a yes.
 template <class A>
 [[gnu::always_inline]] inline bool any(A answers) {
-  using Halves = typename LanesOf<lanes_of<A>>::Halves;
-  Halves all = __builtin_bit_cast(Halves, answers);
-  if constexpr (sizeof(A) == 4 * sizeof(std::int64_t)) {
-    all |= __builtin_shufflevector(all, all, 2, 3, 0, 1);
-    return (all | __builtin_shufflevector(all, all, 1, 0, 3, 2))[0] != 0;
-  } else {
-    return (all | __builtin_shufflevector(all, all, 1, 0))[0] != 0;
-  }
+  return together(answers) != 0;
+}
+// Bit k is answer k.
+template <class A>
+[[gnu::always_inline]] inline std::uint32_t mask_of(A answers) {
+  A bit{};
+  for (std::size_t k = 0; k < lanes_of<A>; ++k) bit[k] = 1 << k;
+  const std::int64_t all = together(answers & bit);
+  return static_cast<std::uint32_t>(all | all >> 32);
 }
 
 }  // namespace pse::antialias

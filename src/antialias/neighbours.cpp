@@ -3,6 +3,6 @@
 
 namespace pse::antialias {
 
-SearchFunction search_for_any(int reach) { return reach == 1 ? search<1> : search<2>; }
+SearchFunction search_for_any(int reach) { return search<8>(reach); }
 
 }  // namespace pse::antialias

@@ -1,8 +1,8 @@
 // The comparing of neighbours (tile.h) itself, for the instructions that the including file is
-// compiled for: neighbours.cpp and neighbours_avx2.cpp. Paths first, for whole rows at once, then
-// values where paths differ, for eight pixels at once. Nothing here may be kept out of line but
-// what is local, since the linker would take one such function for both; hence no standard
-// containers.
+// compiled for: neighbours.cpp, neighbours_avx2.cpp, neighbours_avx512.cpp. Paths first, for whole
+// rows at once, then values where paths differ, for eight or sixteen pixels at once. Nothing here
+// may be kept out of line but what is local, since the linker would take one such function for all;
+// hence no standard containers.
 #pragma once
 
 #include "antialias/lanes.h"
@@ -13,11 +13,6 @@ namespace pse::antialias {
 
 namespace {
 
-// Pixels that are compared at once.
-constexpr std::size_t eight = 8;
-using Eight = LanesOf<eight>::Floats;
-using Answers = AnswersOf<Eight>;
-
 // Steps of an output below this, of 1 and of its size, are no edges: they cannot be told from the
 // texture's own detail.
 constexpr float least_step = 0.01f;
@@ -26,32 +21,38 @@ constexpr float least_step = 0.01f;
 constexpr float least_end = 0.05f;
 
 // Nearer than this to a value, others do not jump from it.
-[[gnu::always_inline]] inline Eight least_step_from(Eight value) {
+template <class V>
+[[gnu::always_inline]] inline V least_step_from(V value) {
   constexpr float huge = 1e30f;
-  return least_step * (1 + smaller(size(value), Eight{} + huge));
+  return least_step * (1 + smaller(size(value), V{} + huge));
 }
 
 // Whether an output jumps from samples with the values `here` to opposite neighbours of them.
+template <class V>
 struct Jumps {
-  Answers ahead, back;
+  AnswersOf<V> ahead, back;
 };
-[[gnu::always_inline]] inline Jumps jumps(Eight here, Eight ahead, Eight back, Eight least) {
-  const Eight to_a = ahead - here, to_b = back - here;
+template <class V>
+[[gnu::always_inline]] inline Jumps<V> jumps(V here, V ahead, V back, V least) {
+  using Answers = AnswersOf<V>;
+  const V to_a = ahead - here, to_b = back - here;
   // The neighbour on the other side tells the slope, and so where this one would be without a jump.
-  const Eight beyond = size(to_a + to_b), up = size(to_a), down = size(to_b);
+  const V beyond = size(to_a + to_b), up = size(to_a), down = size(to_b);
   const Answers same_a = bits(ahead) == bits(here), same_b = bits(back) == bits(here);
   return {~((up <= least) | (beyond <= larger(down, least)) | same_a),
           ~((down <= least) | (beyond <= larger(up, least)) | same_b)};
 }
 
-// What is seen of eight pixels.
-struct Seen {
-  Answers edge{}, silhouette{}, narrow{}, untold{};
-};
-
-// Looks at all pixels whose columns and rows are within `reach`.
-template <int reach>
+// Looks at all pixels whose columns and rows are within `reach`, `count` at once.
+template <std::size_t count, int reach>
 class Search {
+  using Values = typename LanesOf<count>::Floats;
+  using Answers = AnswersOf<Values>;
+  // What is seen of so many pixels.
+  struct Seen {
+    Answers edge{}, silhouette{}, narrow{}, untold{};
+  };
+
  public:
   [[gnu::always_inline]] Search(const Tile& tile, const SearchRoom& room)
       : tile_(tile),
@@ -74,17 +75,19 @@ class Search {
     for (int y = tile_.rect.y0; y < tile_.rect.y1; ++y) {
       const auto first = static_cast<std::ptrdiff_t>(tile_.at(tile_.rect.x0, y));
       if (!see_changes(first, width, changes)) continue;
-      for (std::ptrdiff_t i = 0; i < width; i += eight) {
+      for (std::ptrdiff_t i = 0; i < width; i += at_once) {
         if (!any(load<Answers>(changes + i))) continue;
         const Seen seen = look(first + i);
-        const Answers wanted = seen.edge | seen.narrow;
-        if (!any(wanted)) continue;
-        // All are written, and what is not wanted is written over.
-        const int x = tile_.rect.x0 + static_cast<int>(i);
-        const int count = static_cast<int>(width - i < 8 ? width - i : 8);
-        for (int k = 0; k < count; ++k) {
-          *next = {x + k, y, seen.silhouette[k] != 0, seen.edge[k] == 0, seen.untold[k] != 0};
-          next -= wanted[k];
+        std::uint32_t wanted = mask_of(seen.edge | seen.narrow);
+        if (width - i < at_once) wanted &= (1u << (width - i)) - 1;
+        if (wanted == 0) continue;
+        const std::uint32_t edge = mask_of(seen.edge), untold = mask_of(seen.untold),
+                            silhouette = mask_of(seen.silhouette);
+        for (; wanted != 0; wanted &= wanted - 1) {
+          const auto k = __builtin_ctz(wanted);
+          const auto has = [&](std::uint32_t mask) { return (mask >> k & 1) != 0; };
+          *next++ = {tile_.rect.x0 + static_cast<int>(i) + k, y, has(silhouette), !has(edge),
+                     has(untold)};
         }
       }
     }
@@ -92,9 +95,11 @@ class Search {
   }
 
  private:
+  static constexpr std::ptrdiff_t at_once = count;
+
   // Whether the searches of samples end in different places.
   [[gnu::always_inline]] Answers end_apart(std::ptrdiff_t here, std::ptrdiff_t there) const {
-    return ~(size(load<Eight>(ends_ + there) - load<Eight>(ends_ + here)) <= least_end);
+    return ~(size(load<Values>(ends_ + there) - load<Values>(ends_ + here)) <= least_end);
   }
   [[gnu::always_inline]] Answers changes(std::ptrdiff_t here, std::ptrdiff_t there) const {
     const Answers change = load<Answers>(path_ + here) ^ load<Answers>(path_ + there);
@@ -103,7 +108,7 @@ class Search {
 
   // For all samples of the area: not 0 where the path changes along the row within reach.
   [[gnu::always_inline]] void see_changes_along_rows() const {
-    for (std::ptrdiff_t i = reach; i + reach < samples_; i += eight) {
+    for (std::ptrdiff_t i = reach; i + reach < samples_; i += at_once) {
       Answers change{};
       for (int k = 1; k <= reach; ++k) change |= changes(i, i - k) | changes(i, i + k);
       store(room_.changes + i, change);
@@ -111,10 +116,10 @@ class Search {
   }
 
   // For the samples of a row: not 0 where the path changes within reach. Whether there is any.
-  [[gnu::always_inline]] bool see_changes(std::ptrdiff_t first, std::ptrdiff_t count,
+  [[gnu::always_inline]] bool see_changes(std::ptrdiff_t first, std::ptrdiff_t width,
                                           std::int32_t* changes) const {
     Answers any_change{};
-    for (std::ptrdiff_t i = 0; i < count; i += eight) {
+    for (std::ptrdiff_t i = 0; i < width; i += at_once) {
       const std::ptrdiff_t at = first + i;
       Answers change = load<Answers>(room_.changes + at);
       for (std::ptrdiff_t k = width_; k <= reach * width_; k += width_)
@@ -126,7 +131,7 @@ class Search {
     return any(any_change);
   }
 
-  // Eight pixels in a row; what is said of those behind the row's end has no meaning.
+  // Values pixels in a row; what is said of those behind the row's end has no meaning.
   [[gnu::always_inline]] Seen look(std::ptrdiff_t here) const {
     Seen seen = look_at_paths(here);
     if (!any(seen.edge)) return seen;
@@ -145,11 +150,11 @@ class Search {
       seen.narrow |= leap(here, here + step) | leap(here, here - step);
     for (std::size_t o = 0; o < tile_.outputs; ++o) {
       const float* at = tile_.planes[o] + here;
-      const Eight value = load<Eight>(at), least = least_step_from(value);
+      const Values value = load<Values>(at), least = least_step_from(value);
       Answers near = Answers{} - 1;
       for (const std::ptrdiff_t step : steps_)
-        near &= (size(load<Eight>(at + step) - value) <= least) &
-                (size(load<Eight>(at - step) - value) <= least);
+        near &= (size(load<Values>(at + step) - value) <= least) &
+                (size(load<Values>(at - step) - value) <= least);
       seen.edge |= ~near;
     }
     return seen;
@@ -157,7 +162,7 @@ class Search {
 
   // Whether more than one decision falls differently (path.cpp).
   [[gnu::always_inline]] Answers leap(std::ptrdiff_t here, std::ptrdiff_t there) const {
-    const Eight a = load<Eight>(path_ + here), b = load<Eight>(path_ + there);
+    const Values a = load<Values>(path_ + here), b = load<Values>(path_ + there);
     const Answers apart = (whole(a) - whole(b)) & ((1 << bits_of_jumps) - 1), steps = apart & 7;
     return (apart != 0) & (steps != 1) & (steps != 7);
   }
@@ -179,18 +184,18 @@ class Search {
     const Answers way = load<Answers>(path_ + here);
     Answers ahead = load<Answers>(path_ + here + step) != way;
     Answers back = load<Answers>(path_ + here - step) != way;
-    Jumps ends{};
+    Jumps<Values> ends{};
     if (ends_ != nullptr) {
-      ends = jumps(load<Eight>(ends_ + here), load<Eight>(ends_ + here + step),
-                   load<Eight>(ends_ + here - step), Eight{} + least_end);
+      ends = jumps(load<Values>(ends_ + here), load<Values>(ends_ + here + step),
+                   load<Values>(ends_ + here - step), Values{} + least_end);
       ahead |= ends.ahead, back |= ends.back;
     }
     Answers jumps_ahead{}, jumps_back{};
     for (std::size_t o = 0; o < tile_.outputs; ++o) {
       const float* at = tile_.planes[o] + here;
-      const Eight value = load<Eight>(at);
-      const Jumps found =
-          jumps(value, load<Eight>(at + step), load<Eight>(at - step), least_step_from(value));
+      const Values value = load<Values>(at);
+      const Jumps<Values> found =
+          jumps(value, load<Values>(at + step), load<Values>(at - step), least_step_from(value));
       jumps_ahead |= ahead & found.ahead;
       jumps_back |= back & found.back;
     }
@@ -198,9 +203,9 @@ class Search {
     seen.untold |= (jumps_ahead & ends.ahead) | (jumps_back & ends.back);
     if (tile_.ids == nullptr) return;
     const float* id = tile_.ids + here;
-    const Eight object = load<Eight>(id);
-    seen.silhouette |= (jumps_ahead & (load<Eight>(id + step) != object)) |
-                       (jumps_back & (load<Eight>(id - step) != object));
+    const Values object = load<Values>(id);
+    seen.silhouette |= (jumps_ahead & (load<Values>(id + step) != object)) |
+                       (jumps_back & (load<Values>(id - step) != object));
   }
 
   const Tile& tile_;
@@ -211,9 +216,13 @@ class Search {
   std::ptrdiff_t steps_[2 * reach * (reach + 1)];  // to one of each two opposite neighbours
 };
 
-template <int reach>
-std::size_t search(const Tile& tile, const SearchRoom& room) {
-  return Search<reach>(tile, room).run();
+template <std::size_t count, int reach>
+std::size_t search_within(const Tile& tile, const SearchRoom& room) {
+  return Search<count, reach>(tile, room).run();
+}
+template <std::size_t count>
+SearchFunction search(int reach) {
+  return reach == 1 ? search_within<count, 1> : search_within<count, 2>;
 }
 
 }  // namespace

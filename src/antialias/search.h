@@ -1,5 +1,4 @@
-// The two searches for edge pixels that tile.cpp chooses from: the same, for different
-// instructions.
+// The searches for edge pixels that tile.cpp chooses from: the same, for different instructions.
 #pragma once
 
 #include "antialias/tile.h"
@@ -18,5 +17,6 @@ using SearchFunction = std::size_t (*)(const Tile& tile, const SearchRoom& room)
 // reach: 1 or 2.
 SearchFunction search_for_any(int reach);
 SearchFunction search_for_avx2(int reach);
+SearchFunction search_for_avx512(int reach);
 
 }  // namespace pse::antialias

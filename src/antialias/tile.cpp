@@ -6,12 +6,14 @@
 namespace pse::antialias {
 namespace {
 
-bool has_avx2() {
+// The search for this processor.
+SearchFunction search_of(int reach) {
 #ifdef __x86_64__
-  return __builtin_cpu_supports("avx2") != 0;
-#else
-  return false;
+  if (__builtin_cpu_supports("avx512vl") != 0 && __builtin_cpu_supports("avx512dq") != 0)
+    return search_for_avx512(reach);
+  if (__builtin_cpu_supports("avx2") != 0) return search_for_avx2(reach);
 #endif
+  return search_for_any(reach);
 }
 
 }  // namespace
@@ -29,8 +31,7 @@ std::span<const Pixel> find_edge_pixels(const Tile& tile, const Filter& filter, 
   grow(found.changes, samples + SearchRoom::beyond);
   grow(found.pixels, pixels + SearchRoom::beyond);
   const int reach = apron_of(filter);
-  const SearchFunction search = has_avx2() ? search_for_avx2(reach) : search_for_any(reach);
-  const std::size_t count = search(tile, {found.changes.data(), found.pixels.data()});
+  const std::size_t count = search_of(reach)(tile, {found.changes.data(), found.pixels.data()});
   return std::span(found.pixels).first(count);
 }
 

@@ -7,6 +7,10 @@
 #include <cstdint>
 #include <cstring>
 
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
+
 namespace pse::antialias {
 
 // `count` numbers; comparing two such gives an answer for each: 0 (no) or -1 (yes).
@@ -71,32 +75,31 @@ template <class V>
   return which ? yes : no;
 }
 
-// All lanes' bits together.
-template <class A>
-[[gnu::always_inline]] inline std::int64_t together(A lanes) {
-  using Halves = typename LanesOf<lanes_of<A>>::Halves;
-  Halves all = __builtin_bit_cast(Halves, lanes);
-  // Halves onto halves, until there are two.
-  if constexpr (sizeof(A) == 8 * sizeof(std::int64_t))
-    all |= __builtin_shufflevector(all, all, 4, 5, 6, 7, 0, 1, 2, 3);
-  if constexpr (sizeof(A) == 8 * sizeof(std::int64_t))
-    all |= __builtin_shufflevector(all, all, 2, 3, 0, 1, 6, 7, 4, 5);
-  else if constexpr (sizeof(A) == 4 * sizeof(std::int64_t))
-    all |= __builtin_shufflevector(all, all, 2, 3, 0, 1);
-  return all[0] | all[1];
-}
-// Whether there is a yes.
-template <class A>
-[[gnu::always_inline]] inline bool any(A answers) {
-  return together(answers) != 0;
-}
-// Bit k is answer k.
+// Bit k is answer k. Where one instruction gives them, that.
 template <class A>
 [[gnu::always_inline]] inline std::uint32_t mask_of(A answers) {
-  A bit{};
-  for (std::size_t k = 0; k < lanes_of<A>; ++k) bit[k] = 1 << k;
-  const std::int64_t all = together(answers & bit);
-  return static_cast<std::uint32_t>(all | all >> 32);
+#ifdef __AVX512DQ__
+  if constexpr (sizeof(A) == sizeof(__m512i))
+    return _mm512_movepi32_mask(__builtin_bit_cast(__m512i, answers));
+#endif
+#ifdef __AVX__
+  if constexpr (sizeof(A) == sizeof(__m256))
+    return static_cast<std::uint32_t>(_mm256_movemask_ps(__builtin_bit_cast(__m256, answers)));
+#endif
+  std::uint32_t mask = 0;
+  for (std::size_t k = 0; k < lanes_of<A>; ++k) mask |= (answers[k] & 1u) << k;
+  return mask;
+}
+// Whether there is a yes, or a number that is not 0.
+template <class A>
+[[gnu::always_inline]] inline bool any(A answers) {
+#ifdef __AVX__
+  if constexpr (sizeof(A) >= sizeof(__m256)) return mask_of(answers != 0) != 0;
+#endif
+  std::int64_t all = 0;
+  const auto halves = __builtin_bit_cast(typename LanesOf<lanes_of<A>>::Halves, answers);
+  for (std::size_t k = 0; k < lanes_of<A> / 2; ++k) all |= halves[k];
+  return all != 0;
 }
 
 }  // namespace pse::antialias

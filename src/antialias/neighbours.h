@@ -1,13 +1,12 @@
 // The comparing of neighbours (tile.h) itself, for the instructions that the including file is
-// compiled for: neighbours.cpp, neighbours_avx2.cpp, neighbours_avx512.cpp. Paths first, for whole
-// rows at once, then values where paths differ, for eight or sixteen pixels at once. Nothing here
-// may be kept out of line but what is local, since the linker would take one such function for all;
-// hence no standard containers.
+// compiled for (steps.h). Paths first, for whole rows at once, then values where paths differ, for
+// eight or sixteen pixels at once. Nothing here may be kept out of line but what is local, since the
+// linker would take one such function for all; hence no standard containers.
 #pragma once
 
 #include "antialias/lanes.h"
 #include "antialias/path.h"
-#include "antialias/search.h"
+#include "antialias/steps.h"
 
 namespace pse::antialias {
 
@@ -151,11 +150,12 @@ class Search {
     for (std::size_t o = 0; o < tile_.outputs; ++o) {
       const float* at = tile_.planes[o] + here;
       const Values value = load<Values>(at), least = least_step_from(value);
-      Answers near = Answers{} - 1;
+      // As bits, since NaN is the largest of these.
+      Answers farthest{};
       for (const std::ptrdiff_t step : steps_)
-        near &= (size(load<Values>(at + step) - value) <= least) &
-                (size(load<Values>(at - step) - value) <= least);
-      seen.edge |= ~near;
+        farthest = larger(farthest, larger(bits(size(load<Values>(at + step) - value)),
+                                           bits(size(load<Values>(at - step) - value))));
+      seen.edge |= farthest > bits(least);
     }
     return seen;
   }
@@ -184,6 +184,9 @@ class Search {
     const Answers way = load<Answers>(path_ + here);
     Answers ahead = load<Answers>(path_ + here + step) != way;
     Answers back = load<Answers>(path_ + here - step) != way;
+    // Of what is known to be an edge there may be more to tell.
+    const bool all_told = ends_ == nullptr && tile_.ids == nullptr;
+    if (all_told) ahead &= ~seen.edge, back &= ~seen.edge;
     Jumps<Values> ends{};
     if (ends_ != nullptr) {
       ends = jumps(load<Values>(ends_ + here), load<Values>(ends_ + here + step),
@@ -191,6 +194,7 @@ class Search {
       ahead |= ends.ahead, back |= ends.back;
     }
     Answers jumps_ahead{}, jumps_back{};
+    if (!any(ahead | back)) return;
     for (std::size_t o = 0; o < tile_.outputs; ++o) {
       const float* at = tile_.planes[o] + here;
       const Values value = load<Values>(at);
@@ -217,12 +221,8 @@ class Search {
 };
 
 template <std::size_t count, int reach>
-std::size_t search_within(const Tile& tile, const SearchRoom& room) {
+std::size_t search(const Tile& tile, const SearchRoom& room) {
   return Search<count, reach>(tile, room).run();
-}
-template <std::size_t count>
-SearchFunction search(int reach) {
-  return reach == 1 ? search_within<count, 1> : search_within<count, 2>;
 }
 
 }  // namespace

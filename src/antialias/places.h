@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "antialias/corner.h"
+#include "antialias/crossings.h"
 #include "antialias/tile.h"
 #include "stream/planes.h"
 #include "stream/program.h"
@@ -15,8 +17,7 @@ namespace pse::antialias {
 struct Places {
   std::vector<double> x, y;
   std::size_t size() const { return x.size(); }
-  void clear() { x.clear(), y.clear(); }
-  void add(double px, double py) { x.push_back(px), y.push_back(py); }
+  void resize(std::size_t count) { x.resize(count), y.resize(count); }
 };
 
 // results[o][i]: output o of the program at place i.
@@ -25,6 +26,8 @@ class Results {
   // Makes room; what was there is lost.
   void resize(std::size_t outputs, std::size_t places);
   float* operator[](std::size_t output) const { return planes_.pointers()[output]; }
+  // For Steps::see_nearness() and the like.
+  const float* const* lists() const { return planes_.pointers().data(); }
 
  private:
   Planes planes_;
@@ -33,13 +36,23 @@ class Results {
 
 class PlaceRunner;
 
+// A pixel that needs more than one look, and the edges that are known to be near.
+struct Unclear {
+  Pixel pixel;
+  Lines lines = {};
+};
+
 // One thread's memory, used again from run to run.
 struct Work {
   Found found;
+  Crossings crossings;
+  std::vector<Unclear> unclear;
   Places places;    // where the next run is to be
   Results results;  // of the last run
   Scratch scratch;
   std::vector<std::pair<const PlaceRunner*, Planes>> inputs;
+  std::vector<std::int32_t> flags;
+  std::vector<float> sums, lows, highs;
 };
 
 // An input "NAME$x" or "NAME$y" that is the slope of the input NAME per pixel; both are indices of

@@ -6,41 +6,10 @@
 #include <cmath>
 
 #include "antialias/derive.h"
-#include "antialias/lanes.h"
+#include "antialias/steps.h"
 
 namespace pse::antialias {
-
-// Pixels with one edge under their kernels: numbers i of all lists belong together. The lists of
-// numbers are as long as the next multiple of four says; what lies behind the pixels has no
-// meaning.
-struct Refiner::Crossings {
-  std::vector<Pixel> pixels;
-  // Of the centre from the edge, positive on the side the normal points to.
-  std::vector<float> distance;
-  std::vector<float> nx, ny;
-  // How much the normal turns towards the tangent (-ny, nx) per pixel along it.
-  std::vector<float> bend;
-  std::vector<float> share;          // of the kernel on the normal's side
-  std::vector<float> towards, away;  // to the middles of the sides, along the normal
-
-  std::size_t size() const { return pixels.size(); }
-  // Room in all lists for one number for each pixel.
-  void make_room() {
-    const std::size_t count = (size() + four - 1) / four * four;
-    for (auto* list : {&distance, &nx, &ny, &bend, &share, &towards, &away}) list->resize(count);
-  }
-  Line line(std::size_t i) const { return {distance[i], nx[i], ny[i]}; }
-  // Moves the pixel `from` to `to`.
-  void move(std::size_t from, std::size_t to) {
-    pixels[to] = pixels[from];
-    for (auto* list : {&distance, &nx, &ny, &bend, &share, &towards, &away})
-      (*list)[to] = (*list)[from];
-  }
-};
-
 namespace {
-
-double centre(int pixel) { return pixel + 0.5; }
 
 // Where no program ran there is no normal, and no line.
 Line line_of(const Results& edges, std::size_t which, std::size_t i) {
@@ -50,186 +19,109 @@ Line line_of(const Results& edges, std::size_t which, std::size_t i) {
 
 // Where two neighbours differ an edge lies between them, so within this of either.
 constexpr float farthest_explained = 1.7f;
-// How far along the edge, and beyond it, it is looked at again; in reaches of the kernel.
-constexpr float along = 0.7f, beyond = 0.1f;
-// Edges that turn by more than this from one to the other look are not followed.
-constexpr float most_turn = 0.5f;
 // A pixel's middle is on an edge as near as this.
 constexpr float on_edge = 0.01f;
 // A share so near to 0 or 1 leaves the pixel as it is.
 constexpr float least_share = 0.001f;
 
-// The distances x of pixels from an edge, from what two places said of it: f / |f'| is `first` at
-// the pixel, and `second` at `out` along the normal and s along the edge, which bends away by a
-// parabola. Along the normal f is x + b x^2, so f / |f'| is x - b x^2; a bend measured off the edge
-// is made that of the edge.
-Four true_distance(Four first, Four second, Four out, Four& bend, float s) {
-  constexpr float least = 0.15f, most_b = 1, unseen = 0.001f;
-  const Four measured = bend;
-  Four beside = second, x = first;
-  for (int round = 0; round < 3; ++round) {
-    bend = measured / larger(1 - measured * beside, Four{} + 0.5f);
-    x = beside - out - bend * (s * s / 2);
-    const Four b = choose(size(x) < least, Four{}, clamped((x - first) / (x * x), -most_b, most_b));
-    beside = second + b * beside * beside;
-  }
-  // Both say the same of a straight edge.
-  const AnswersOf<Four> is_straight =
-      (size(measured) < unseen) & (size(second - out - first) < unseen);
-  bend = choose(is_straight, measured, bend);
-  return choose(is_straight, first, x);
-}
-
 }  // namespace
 
-Refiner::Crossings Refiner::find_crossings(const std::vector<Pixel>& pixels,
-                                           std::vector<Unclear>& unclear, Work& work,
-                                           RunStatus& status) const {
+// Of the pixels, those with one edge within reach stay.
+void Refiner::find_crossings(CrossingLists& c, Work& work, RunStatus& status) const {
   Places& places = work.places;
-  places.clear();
-  for (const Pixel& pixel : pixels) places.add(centre(pixel.x), centre(pixel.y));
+  places.resize(c.count);
+  for (std::size_t i = 0; i < c.count; ++i)
+    places.x[i] = c.x[i] + 0.5, places.y[i] = c.y[i] + 0.5;
   const Results& edges = edges_->run(work, status);
   const float reach = options_.filter.reach(), farthest = std::max(farthest_explained, 2 * reach);
-  Crossings crossings;
-  crossings.pixels = pixels;
-  crossings.make_room();
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const Line first = line_of(edges, 0, i), second = line_of(edges, 1, i);
-    const float nearest = std::abs(first.distance);
-    if (!(nearest <= farthest) || std::abs(second.distance) < reach) {
-      unclear.push_back({pixels[i], {first, second}});
-    } else if (nearest < reach * 1.2f) {
-      crossings.pixels[count] = pixels[i];
-      crossings.distance[count] = first.distance;
-      crossings.nx[count] = first.nx, crossings.ny[count] = first.ny;
-      ++count;
-    }
+  work.flags.resize(c.count + CrossingLists::beyond);
+  auto* nearness = reinterpret_cast<Nearness*>(work.flags.data());
+  steps().see_nearness(edges.lists(), c.count, reach, farthest, nearness);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < c.count; ++i) {
+    if (nearness[i] == Nearness::unclear)
+      work.unclear.push_back({{c.x[i], c.y[i]}, {line_of(edges, 0, i), line_of(edges, 1, i)}});
+    // Most are out of reach or not by chance: no branch.
+    c.x[kept] = c.x[i], c.y[kept] = c.y[i];
+    c.distance[kept] = edges[0][i], c.nx[kept] = edges[1][i], c.ny[kept] = edges[2][i];
+    kept += nearness[i] == Nearness::one_edge;
   }
-  crossings.pixels.resize(count);
-  crossings.make_room();
-  return crossings;
+  c.count = kept;
 }
 
 // Looks at each edge again, a little along it and on its far side: how it bends, and whether there
 // is another edge.
-void Refiner::follow(Crossings& crossings, std::vector<Unclear>& unclear, Work& work,
-                     RunStatus& status) const {
-  const float reach = options_.filter.reach(), s = along * reach;
-  const std::size_t count = crossings.size();
+void Refiner::follow(CrossingLists& c, Work& work, RunStatus& status) const {
+  const float reach = options_.filter.reach();
   Places& places = work.places;
-  places.x.resize(count), places.y.resize(count);
-  // From the first guess of the edge along the normal.
-  const auto offset = [&](auto distance) {
-    return distance < 0 ? decltype(distance){} + beyond * reach
-                        : decltype(distance){} - beyond * reach;
-  };
-  for (std::size_t i = 0; i < count; ++i) {
-    const Line c = crossings.line(i);
-    const float out = offset(c.distance) - c.distance;
-    places.x[i] = centre(crossings.pixels[i].x) + double(out * c.nx - s * c.ny);
-    places.y[i] = centre(crossings.pixels[i].y) + double(out * c.ny + s * c.nx);
-  }
+  places.resize(c.count);
+  steps().find_second_looks(c, reach, places.x.data(), places.y.data());
   const Results& edges = edges_->run(work, status);
-
-  // Four edges at once; where the answer is no, there is more than one bent line.
-  std::vector<float> others(crossings.distance.size());
-  std::vector<std::int32_t> is_one(others.size());
-  for (std::size_t i = 0; i < count; i += four) {
-    const Four nx = load<Four>(&crossings.nx[i]), ny = load<Four>(&crossings.ny[i]);
-    const Four first = load<Four>(&crossings.distance[i]);
-    const Four out = offset(first) - first;
-    const Four x = load<Four>(edges[1] + i), y = load<Four>(edges[2] + i);
-    const Four cosine = x * nx + y * ny, turned = choose(cosine < 0, Four{} - 1, Four{} + 1);
-    const Four turn = (y * nx - x * ny) / cosine;
-    const Four beside = load<Four>(edges[0] + i) * turned;
-    // The other line's distance from the pixel.
-    const Four dx = s * ny - out * nx, dy = -(s * nx) - out * ny;
-    const Four other =
-        load<Four>(edges[3] + i) + load<Four>(edges[4] + i) * dx + load<Four>(edges[5] + i) * dy;
-    const AnswersOf<Four> one =
-        (size(turn) < most_turn) & (size(beside) < reach) & ~(size(other) < reach);
-    Four bend = turn / s;
-    store(&crossings.distance[i], true_distance(first, beside / size(cosine), out, bend, s));
-    store(&crossings.bend[i], bend);
-    store(&others[i], other);
-    store(&is_one[i], one);
-  }
-  settle_shares(crossings);
+  steps().look_again(c, edges.lists(), reach);
+  settle_shares(c);
 
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Line c = crossings.line(i);
-    if (is_one[i] == 0) {
+  for (std::size_t i = 0; i < c.count; ++i) {
+    if (c.is_one[i] == 0) {
       const Line second = line_of(edges, 1, i);
-      unclear.push_back({crossings.pixels[i], {c, {others[i], second.nx, second.ny}}});
-      continue;
+      work.unclear.push_back(
+          {{c.x[i], c.y[i]}, {c.line(i), {c.other[i], second.nx, second.ny}}});
     }
-    const float share = crossings.share[i];
-    if (share > least_share && share < 1 - least_share) crossings.move(i, kept++);
+    const float share = c.share[i];
+    c.move(i, kept);
+    kept += (c.is_one[i] != 0) & (share > least_share) & (share < 1 - least_share);
   }
-  crossings.pixels.resize(kept);
+  c.count = kept;
 }
 
 // How the edges part the kernel.
-void Refiner::settle_shares(Crossings& c) const {
-  std::vector<float> turning(c.distance.size());
-  options_.filter.measure(c.distance, c.nx, c.ny, {c.share, c.towards, turning});
-  for (std::size_t i = 0; i < c.share.size(); i += four) {
-    const Four straight = load<Four>(&c.share[i]), moment = load<Four>(&c.towards[i]);
-    const Four bend = load<Four>(&c.bend[i]), distance = load<Four>(&c.distance[i]);
-    // The parabola -bend y^2 / 2 for the line, to second order.
-    const Four share =
-        straight + bend / 2 * load<Four>(&turning[i]) * (1 - 0.75f * bend * distance);
-    // An edge that is out of reach parts nothing.
-    const AnswersOf<Four> is_whole = (straight <= 0) | (straight >= 1);
-    store(&c.share[i], choose(is_whole, straight, share));
-    store(&c.towards[i], moment / straight);
-    store(&c.away[i], -moment / (1 - straight));
-  }
+void Refiner::settle_shares(const CrossingLists& c) const {
+  const std::size_t count = (c.count + 3) / 4 * 4;
+  options_.filter.measure({c.distance, count}, {c.nx, count}, {c.ny, count},
+                          {{c.share, count}, {c.towards, count}, {c.turning, count}});
+  steps().bend_shares(c);
 }
 
 // LERP(share, one side, other side), each side where the kernel's weight on it has its middle: what
 // changes evenly on a side then has exactly its mean.
-void Refiner::blend(const Tile& tile, const Crossings& crossings, Refined& result,
-                    std::vector<Unclear>& unclear, Work& work, RunStatus& status) const {
-  const std::size_t count = crossings.size();
+void Refiner::blend(const Tile& tile, const CrossingLists& c, Refined& result, Work& work,
+                    RunStatus& status) const {
+  const std::size_t count = c.count;
   Places& places = work.places;
-  places.x.resize(2 * count), places.y.resize(2 * count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Line c = crossings.line(i);
-    const double x = centre(crossings.pixels[i].x), y = centre(crossings.pixels[i].y);
-    for (std::size_t side = 0; side < 2; ++side) {
-      const float by = side == 0 ? crossings.towards[i] : crossings.away[i];
-      places.x[2 * i + side] = x + double(by * c.nx),
-                       places.y[2 * i + side] = y + double(by * c.ny);
-    }
-  }
+  places.resize(2 * count);
+  steps().find_sides(c, places.x.data(), places.y.data());
   const Results& sides = program_.run(work, status);
-  const std::size_t start = result.pixels.size();
-  result.resize(start + count);
-  std::size_t kept = start;
+  result.resize(count);
+  for (std::size_t o = 0; o < outputs_; ++o) {
+    const float *a = sides[o], *b = a + count;
+    float* to = result.values[o].data();
+    for (std::size_t i = 0; i < count; ++i) to[i] = b[i] + c.share[i] * (a[i] - b[i]);
+  }
+
+  // The sides must be two ways through the program, the pixel's own one of them.
+  const float *path_a = sides[outputs_], *path_b = path_a + count;
+  std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const Pixel& pixel = crossings.pixels[i];
-    const float distance = crossings.distance[i], share = crossings.share[i];
-    const std::size_t here = tile.at(pixel.x, pixel.y), a = 2 * i, b = a + 1;
-    std::size_t own = distance < 0 ? b : a;
-    // The sides must be two ways through the program, the pixel's own one of them.
-    const float* path = sides[outputs_];
+    const std::size_t here = tile.at(c.x[i], c.y[i]);
+    const float path = tile.path()[here];
+    const bool is_a = path_a[i] == path, is_b = path_b[i] == path;
+    bool on_a = !(c.distance[i] < 0);
     // On which side a pixel lies whose middle is on the edge, rounding decides.
-    if (std::abs(distance) < on_edge && path[own] != tile.path()[here]) own = own == a ? b : a;
-    const bool one_way = path[a] == path[b], strange = path[own] != tile.path()[here];
+    if (std::abs(c.distance[i]) < on_edge && !(on_a ? is_a : is_b)) on_a = !on_a;
+    const bool one_way = path_a[i] == path_b[i], strange = !(on_a ? is_a : is_b);
     bool doubt = false;
-    for (std::size_t o = 0; o < outputs_ && (one_way || strange) && !doubt; ++o)
-      doubt = (one_way && differ(sides[o][a], sides[o][b])) ||
-              (strange && differ(sides[o][own], tile.planes[o][here]));
+    if (one_way | strange)
+      for (std::size_t o = 0; o < outputs_ && !doubt; ++o) {
+        const float a = sides[o][i], b = sides[o][count + i];
+        doubt = (one_way && differ(a, b)) || (strange && differ(on_a ? a : b, tile.planes[o][here]));
+      }
     if (doubt) {
-      unclear.push_back({pixel});
+      work.unclear.push_back({{c.x[i], c.y[i]}});
       continue;
     }
-    result.pixels[kept] = pixel;
-    for (std::size_t o = 0; o < outputs_; ++o)
-      result.values[o][kept] = sides[o][b] + share * (sides[o][a] - sides[o][b]);
+    result.pixels[kept] = {c.x[i], c.y[i]};
+    if (kept < i)
+      for (auto& plane : result.values) plane[kept] = plane[i];
     ++kept;
   }
   result.resize(kept);
@@ -240,22 +132,23 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
   Refined result({}, outputs_);
   if (found.empty()) return result;
   counts.filtered += static_cast<std::int64_t>(found.size());
-  std::vector<Pixel> inner;
-  std::vector<Unclear> unclear;
+  work.unclear.clear();
+  CrossingLists inner = work.crossings.lists(found.size());
   for (const Pixel& pixel : found) {
+    inner.x[inner.count] = pixel.x, inner.y[inner.count] = pixel.y;
     // The program knows the edges within objects, not those of the objects.
     if (pixel.silhouette || pixel.narrow || pixel.untold || edges_ == nullptr)
-      unclear.push_back({pixel});
+      work.unclear.push_back({pixel});
     else
-      inner.push_back(pixel);
+      ++inner.count;
   }
-  if (!inner.empty()) {
-    Crossings crossings = find_crossings(inner, unclear, work, status);
-    follow(crossings, unclear, work, status);
-    blend(tile, crossings, result, unclear, work, status);
+  if (inner.count > 0) {
+    find_crossings(inner, work, status);
+    follow(inner, work, status);
+    blend(tile, inner, result, work, status);
   }
   counts.blended += static_cast<std::int64_t>(result.pixels.size());
-  settle(tile, unclear, result, counts, work, status);
+  settle(tile, result, counts, work, status);
   return result;
 }
 

@@ -2,7 +2,6 @@
 // chapter's "More Detailed Description", pixel by pixel.
 #pragma once
 
-#include "antialias/corner.h"
 #include "antialias/patterns.h"
 #include "antialias/places.h"
 #include "antialias/programs.h"
@@ -35,6 +34,10 @@ struct Refined {
     pixels.resize(count);
     for (auto& plane : values) plane.resize(count);
   }
+  void reserve(std::size_t count) {
+    pixels.reserve(count);
+    for (auto& plane : values) plane.reserve(count);
+  }
 };
 
 struct Range {
@@ -63,28 +66,20 @@ class Refiner {
   Refined supersample(std::vector<Pixel> pixels, Work& work, RunStatus& status) const;
 
  private:
-  struct Crossings;
-  // A pixel that needs more than one look, and the edges that are known to be near.
-  struct Unclear {
-    Pixel pixel;
-    Lines lines = {};
-  };
-  Crossings find_crossings(const std::vector<Pixel>& pixels, std::vector<Unclear>& unclear,
-                           Work& work, RunStatus& status) const;
-  void follow(Crossings& crossings, std::vector<Unclear>& unclear, Work& work,
-              RunStatus& status) const;
-  void settle_shares(Crossings& crossings) const;
-  void blend(const Tile& tile, const Crossings& crossings, Refined& result,
-             std::vector<Unclear>& unclear, Work& work, RunStatus& status) const;
+  void find_crossings(CrossingLists& crossings, Work& work, RunStatus& status) const;
+  void follow(CrossingLists& crossings, Work& work, RunStatus& status) const;
+  void settle_shares(const CrossingLists& crossings) const;
+  void blend(const Tile& tile, const CrossingLists& crossings, Refined& result, Work& work,
+             RunStatus& status) const;
   std::uint32_t count() const { return static_cast<std::uint32_t>(options_.samples); }
   template <class Visit>
-  void sample(const std::vector<Pixel>& pixels, std::uint32_t first, std::uint32_t last, Work& work,
+  void sample(std::span<const Pixel> pixels, std::uint32_t first, std::uint32_t last, Work& work,
               RunStatus& status, const Visit& visit) const;
   bool by_regions(const Unclear& pixel, std::uint32_t look, const Results& results, std::size_t at,
                   std::span<float> values) const;
   static Range range_around(const Tile& tile, const Pixel& pixel, std::size_t output);
-  void settle(const Tile& tile, const std::vector<Unclear>& unclear, Refined& result,
-              Counts& counts, Work& work, RunStatus& status) const;
+  void settle(const Tile& tile, Refined& result, Counts& counts, Work& work,
+              RunStatus& status) const;
 
   const PlaceRunner& program_;
   const PlaceRunner* edges_;

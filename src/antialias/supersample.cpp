@@ -7,6 +7,7 @@
 
 #include "antialias/lanes.h"
 #include "antialias/refine.h"
+#include "antialias/steps.h"
 
 namespace pse::antialias {
 namespace {
@@ -19,41 +20,6 @@ constexpr std::uint32_t first_look = 8;
 constexpr float mean_per_range = 3;
 // So many samples tell the values of the regions of two edges.
 constexpr std::uint32_t corner_look = 16;
-
-// Sums are taken in a fixed order: of every eighth value, then of these.
-constexpr std::size_t lanes = 2 * four;
-using Sums = std::array<Four, 2>;
-
-float total(const Sums& sums, std::span<const float> rest) {
-  float all = 0;
-  for (const Four& part : sums)
-    for (std::size_t l = 0; l < four; ++l) all += part[l];
-  for (const float value : rest) all += value;
-  return all;
-}
-
-float sum_of(std::span<const float> values) {
-  Sums sums{};
-  std::size_t k = 0;
-  for (; k + lanes <= values.size(); k += lanes)
-    sums[0] += load<Four>(&values[k]), sums[1] += load<Four>(&values[k + four]);
-  return total(sums, values.subspan(k));
-}
-
-Range range_of(std::span<const float> values) {
-  Four lows = Four{} + values[0], highs = lows;
-  std::size_t k = 0;
-  for (; k + four <= values.size(); k += four) {
-    const Four some = load<Four>(&values[k]);
-    lows = smaller(some, lows), highs = larger(some, highs);
-  }
-  Range range{values[0], values[0]};
-  for (std::size_t l = 0; l < four; ++l)
-    range = {smaller(lows[l], range.low), larger(highs[l], range.high)};
-  for (; k < values.size(); ++k)
-    range = {smaller(values[k], range.low), larger(values[k], range.high)};
-  return range;
-}
 
 // Whether some of what is in the range can be told from all that is in the other.
 bool exceeds(const Range& range, const Range& other) {
@@ -69,17 +35,28 @@ bool is_uneven(const Range& range, std::uint32_t count) {
 
 }  // namespace
 
-// Runs the samples [first, last) of each pixel; `visit` gets the pixel's number and where its
-// results begin.
+namespace {
+
+// Room for `lists` summaries of so many pixels, one behind the other.
+Summary summaries(Work& work, std::size_t lists, std::size_t pixels) {
+  for (auto* list : {&work.sums, &work.lows, &work.highs})
+    list->resize(lists * pixels + CrossingLists::beyond);
+  return {work.sums.data(), work.lows.data(), work.highs.data()};
+}
+
+}  // namespace
+
+// Runs the samples [first, last) of each pixel, for so many pixels at once; `visit` gets the number
+// of the first of these, how many they are, and the results, one pixel's after the other.
 template <class Visit>
-void Refiner::sample(const std::vector<Pixel>& pixels, std::uint32_t first, std::uint32_t last,
+void Refiner::sample(std::span<const Pixel> pixels, std::uint32_t first, std::uint32_t last,
                      Work& work, RunStatus& status, const Visit& visit) const {
   const std::size_t each = last - first;
   const std::size_t at_once = std::max<std::size_t>(1, most_places / each);
   for (std::size_t begin = 0; begin < pixels.size() && !status.stopped(); begin += at_once) {
     const std::size_t end = std::min(begin + at_once, pixels.size());
     Places& places = work.places;
-    places.x.resize((end - begin) * each), places.y.resize((end - begin) * each);
+    places.resize((end - begin) * each);
     double *to_x = places.x.data(), *to_y = places.y.data();
     for (std::size_t i = begin; i < end; ++i) {
       const Pixel& pixel = pixels[i];
@@ -91,7 +68,7 @@ void Refiner::sample(const std::vector<Pixel>& pixels, std::uint32_t first, std:
       }
     }
     const Results& results = program_.run(work, status);
-    for (std::size_t i = begin; i < end; ++i) visit(i, results, (i - begin) * each);
+    visit(begin, end - begin, results);
   }
 }
 
@@ -99,9 +76,13 @@ Refined Refiner::supersample(std::vector<Pixel> pixels, Work& work, RunStatus& s
   const std::uint32_t count = this->count();
   Refined all(std::move(pixels), outputs_);
   sample(all.pixels, 0, count, work, status,
-         [&](std::size_t i, const Results& results, std::size_t at) {
-           for (std::size_t o = 0; o < outputs_; ++o)
-             all.values[o][i] = sum_of({results[o] + at, count}) / static_cast<float>(count);
+         [&](std::size_t begin, std::size_t number, const Results& results) {
+           const Summary summary = summaries(work, 1, number);
+           for (std::size_t o = 0; o < outputs_; ++o) {
+             steps().summarise(results[o], number, count, summary);
+             for (std::size_t i = 0; i < number; ++i)
+               all.values[o][begin + i] = summary.sums[i] / static_cast<float>(count);
+           }
          });
   return all;
 }
@@ -145,25 +126,35 @@ bool Refiner::by_regions(const Unclear& pixel, std::uint32_t look, const Results
 
 // What an output is at a pixel and the eight around it.
 Range Refiner::range_around(const Tile& tile, const Pixel& pixel, std::size_t output) {
+  const std::ptrdiff_t width = tile.area.width();
   const float* middle = tile.planes[output] + tile.at(pixel.x, pixel.y);
-  Range around = range_of({middle - 1, 3});
-  for (const std::ptrdiff_t row : {-tile.area.width(), tile.area.width()})
-    around = around.with(range_of({middle + row - 1, 3}));
-  return around;
+  Four lows = Four{} + middle[0], highs = lows;
+  for (const std::ptrdiff_t row : {-width, std::ptrdiff_t{0}, width}) {
+    const Four four_of = load<Four>(middle + row - 1);
+    const Four three = __builtin_shufflevector(four_of, four_of, 0, 1, 2, 1);
+    lows = smaller(three, lows), highs = larger(three, highs);
+  }
+  Range range{lows[0], highs[0]};
+  for (std::size_t l = 1; l < 3; ++l)
+    range = {smaller(lows[l], range.low), larger(highs[l], range.high)};
+  return range;
 }
 
 // Samples in steps, each as many as before it together. Narrow pixels whose first samples show
 // nothing stay as they are; those whose samples confirm two edges are put together from their
 // regions. Half of the samples are enough, but for outlines: theirs are long, and nothing else
 // smooths them.
-void Refiner::settle(const Tile& tile, const std::vector<Unclear>& unclear, Refined& result,
-                     Counts& counts, Work& work, RunStatus& status) const {
+void Refiner::settle(const Tile& tile, Refined& result, Counts& counts, Work& work,
+                     RunStatus& status) const {
+  const std::vector<Unclear>& unclear = work.unclear;
+  if (unclear.empty()) return;
   const std::uint32_t count = this->count(), look = std::min(corner_look, count);
   std::vector<float> sums(unclear.size() * outputs_);
   std::vector<Range> ranges(sums.size());
   std::vector<std::size_t> open(unclear.size());
   std::iota(open.begin(), open.end(), std::size_t{0});
   std::vector<float> values(outputs_);
+  result.reserve(result.pixels.size() + unclear.size());
   const auto done = [&](std::size_t i, const float* of, float number) {
     result.pixels.push_back(unclear[i].pixel);
     for (std::size_t o = 0; o < outputs_; ++o) result.values[o].push_back(of[o] / number);
@@ -176,36 +167,48 @@ void Refiner::settle(const Tile& tile, const std::vector<Unclear>& unclear, Refi
   const auto step = [&](std::uint32_t first, std::uint32_t last) {
     pixels.clear();
     for (const std::size_t i : now) pixels.push_back(unclear[i].pixel);
-    sample(
-        pixels, first, last, work, status,
-        [&](std::size_t k, const Results& results, std::size_t at) {
-          const std::size_t i = now[k];
-          const Pixel& pixel = unclear[i].pixel;
-          float* sum = &sums[i * outputs_];
-          bool uneven = false, more = !pixel.narrow || first > 0;
-          for (std::size_t o = 0; o < outputs_; ++o) {
-            const std::span<const float> seen(results[o] + at, last - first);
-            sum[o] += sum_of(seen);
-            Range& range = ranges[i * outputs_ + o];
-            range = first == 0 ? range_of(seen) : range.with(range_of(seen));
-            if (last > first_look) {
-              uneven = uneven || is_uneven(range, last);
-              continue;
-            }
-            // The first few may have missed what a neighbour shows.
-            const Range around = range_around(tile, pixel, o);
-            more = more || exceeds(range, around);
-            uneven = uneven || is_uneven(range.with(around), last);
-          }
-          if (!more) return;
-          const std::uint32_t most = pixel.silhouette ? count : std::max(look, count / 2);
-          if (!uneven || last >= most)
-            done(i, sum, static_cast<float>(last));
-          else if (first == 0 && last == look && by_regions(unclear[i], look, results, at, values))
-            done(i, values.data(), 1);
-          else
-            kept.push_back(i);
-        });
+    const std::size_t each = last - first;
+    const auto look_at = [&](std::size_t k, std::size_t number, std::size_t s,
+                             const Results& results) {
+      const std::size_t i = now[k];
+      const Pixel& pixel = unclear[i].pixel;
+      float* sum = &sums[i * outputs_];
+      bool uneven = false, more = !pixel.narrow || first > 0;
+      for (std::size_t o = 0; o < outputs_; ++o) {
+        const std::size_t of = o * number + s;
+        const Range seen{work.lows[of], work.highs[of]};
+        sum[o] += work.sums[of];
+        Range& range = ranges[i * outputs_ + o];
+        range = first == 0 ? seen : range.with(seen);
+        if (last > first_look) {
+          uneven = uneven || is_uneven(range, last);
+          continue;
+        }
+        // The first few may have missed what a neighbour shows.
+        const Range around = range_around(tile, pixel, o);
+        more = more || exceeds(range, around);
+        uneven = uneven || is_uneven(range.with(around), last);
+      }
+      if (!more) return;
+      const std::uint32_t most = pixel.silhouette ? count : std::max(look, count / 2);
+      if (!uneven || last >= most)
+        done(i, sum, static_cast<float>(last));
+      else if (first == 0 && last == look &&
+               by_regions(unclear[i], look, results, s * each, values))
+        done(i, values.data(), 1);
+      else
+        kept.push_back(i);
+    };
+    sample(pixels, first, last, work, status,
+           [&](std::size_t begin, std::size_t number, const Results& results) {
+             const Summary all = summaries(work, outputs_, number);
+             for (std::size_t o = 0; o < outputs_; ++o) {
+               const std::size_t of = o * number;
+               steps().summarise(results[o], number, each,
+                                 {all.sums + of, all.lows + of, all.highs + of});
+             }
+             for (std::size_t s = 0; s < number; ++s) look_at(begin + s, number, s, results);
+           });
   };
   const float reach = options_.filter.reach();
   std::uint32_t taken = 0;

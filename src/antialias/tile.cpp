@@ -1,22 +1,9 @@
-// Who compares the neighbours, and the memory for it.
+// The memory for comparing neighbours.
 #include "antialias/tile.h"
 
-#include "antialias/search.h"
+#include "antialias/steps.h"
 
 namespace pse::antialias {
-namespace {
-
-// The search for this processor.
-SearchFunction search_of(int reach) {
-#ifdef __x86_64__
-  if (__builtin_cpu_supports("avx512vl") != 0 && __builtin_cpu_supports("avx512dq") != 0)
-    return search_for_avx512(reach);
-  if (__builtin_cpu_supports("avx2") != 0) return search_for_avx2(reach);
-#endif
-  return search_for_any(reach);
-}
-
-}  // namespace
 
 int apron_of(const Filter& filter) { return filter.reach() > 1.01f ? 2 : 1; }
 
@@ -30,8 +17,8 @@ std::span<const Pixel> find_edge_pixels(const Tile& tile, const Filter& filter, 
   };
   grow(found.changes, samples + SearchRoom::beyond);
   grow(found.pixels, pixels + SearchRoom::beyond);
-  const int reach = apron_of(filter);
-  const std::size_t count = search_of(reach)(tile, {found.changes.data(), found.pixels.data()});
+  const auto reach = static_cast<std::size_t>(apron_of(filter));
+  const std::size_t count = steps().search[reach - 1](tile, {found.changes.data(), found.pixels.data()});
   return std::span(found.pixels).first(count);
 }
 

@@ -1,0 +1,127 @@
+// Edges followed and shares taken for many pixels at once (steps.h), for the instructions that the
+// including file is compiled for. As in neighbours.h nothing here may be kept out of line but what
+// is local.
+#pragma once
+
+#include "antialias/lanes.h"
+#include "antialias/steps.h"
+
+namespace pse::antialias {
+
+namespace {
+
+// How far along the edge, and beyond it, it is looked at again; in reaches of the kernel.
+constexpr float along = 0.7f, beyond_edge = 0.1f;
+// Edges that turn by more than this from one to the other look are not followed.
+constexpr float most_turn = 0.5f;
+
+// How far beyond the edge it is looked at again.
+template <class V>
+[[gnu::always_inline]] inline V offset_beyond(V distance, float reach) {
+  const float beyond = beyond_edge * reach;
+  return distance < 0 ? V{} + beyond : V{} - beyond;
+}
+
+// The distances x of pixels from an edge, from what two places said of it: f / |f'| is `first` at
+// the pixel, and `second` at `out` along the normal and s along the edge, which bends away by a
+// parabola. Along the normal f is x + b x^2, so f / |f'| is x - b x^2; a bend measured off the edge
+// is made that of the edge.
+template <class V>
+[[gnu::always_inline]] inline V true_distance(V first, V second, V out, V& bend, float s) {
+  constexpr float least = 0.15f, most_b = 1, unseen = 0.001f;
+  const V measured = bend;
+  V beside = second, x = first;
+  for (int round = 0; round < 3; ++round) {
+    bend = measured / larger(1 - measured * beside, V{} + 0.5f);
+    x = beside - out - bend * (s * s / 2);
+    const V b = choose(size(x) < least, V{}, clamped((x - first) / (x * x), -most_b, most_b));
+    beside = second + b * beside * beside;
+  }
+  // Both say the same of a straight edge.
+  const AnswersOf<V> is_straight =
+      (size(measured) < unseen) & (size(second - out - first) < unseen);
+  bend = choose(is_straight, measured, bend);
+  return choose(is_straight, first, x);
+}
+
+template <std::size_t lanes>
+void see_nearness(const float* const* lines, std::size_t count, float reach,
+                  float farthest, Nearness* nearness) {
+  using V = typename LanesOf<lanes>::Floats;
+  // Where no program ran there is no normal, and no line.
+  const auto distance_of = [&](std::size_t line, std::size_t i) {
+    const V nx = load<V>(lines[line + 1] + i), ny = load<V>(lines[line + 2] + i);
+    return choose((nx == 0) & (ny == 0), V{} + no_edge, size(load<V>(lines[line] + i)));
+  };
+  constexpr auto one = static_cast<std::int32_t>(Nearness::one_edge);
+  constexpr auto unclear = static_cast<std::int32_t>(Nearness::unclear);
+  for (std::size_t i = 0; i < count; i += lanes) {
+    const V nearest = distance_of(0, i), second = distance_of(3, i);
+    const AnswersOf<V> is_unclear = ~(nearest <= farthest) | (second < reach);
+    const AnswersOf<V> is_near = nearest < reach * 1.2f;
+    store(nearness + i, (is_unclear & unclear) | (~is_unclear & is_near & one));
+  }
+}
+
+// A loop over two lists of places, each number by itself.
+inline void find_second_looks(const CrossingLists& c, float reach, double* to_x, double* to_y) {
+  const float s = along * reach;
+  for (std::size_t i = 0; i < c.count; ++i) {
+    const float out = offset_beyond(c.distance[i], reach) - c.distance[i];
+    to_x[i] = c.x[i] + 0.5 + double(out * c.nx[i] - s * c.ny[i]);
+    to_y[i] = c.y[i] + 0.5 + double(out * c.ny[i] + s * c.nx[i]);
+  }
+}
+
+inline void find_sides(const CrossingLists& c, double* to_x, double* to_y) {
+  for (std::size_t i = 0; i < c.count; ++i) {
+    const double x = c.x[i] + 0.5, y = c.y[i] + 0.5;
+    to_x[i] = x + double(c.towards[i] * c.nx[i]), to_y[i] = y + double(c.towards[i] * c.ny[i]);
+    to_x[c.count + i] = x + double(c.away[i] * c.nx[i]);
+    to_y[c.count + i] = y + double(c.away[i] * c.ny[i]);
+  }
+}
+
+template <std::size_t lanes>
+void look_again(const CrossingLists& c, const float* const* lines, float reach) {
+  using V = typename LanesOf<lanes>::Floats;
+  const float s = along * reach;
+  for (std::size_t i = 0; i < c.count; i += lanes) {
+    const V nx = load<V>(c.nx + i), ny = load<V>(c.ny + i);
+    const V first = load<V>(c.distance + i);
+    const V out = offset_beyond(first, reach) - first;
+    const V x = load<V>(lines[1] + i), y = load<V>(lines[2] + i);
+    const V cosine = x * nx + y * ny, turned = choose(cosine < 0, V{} - 1, V{} + 1);
+    const V turn = (y * nx - x * ny) / cosine;
+    const V beside = load<V>(lines[0] + i) * turned;
+    // The other line's distance from the pixel.
+    const V dx = s * ny - out * nx, dy = -(s * nx) - out * ny;
+    const V other = load<V>(lines[3] + i) + load<V>(lines[4] + i) * dx + load<V>(lines[5] + i) * dy;
+    const AnswersOf<V> one =
+        (size(turn) < most_turn) & (size(beside) < reach) & ~(size(other) < reach);
+    V bend = turn / s;
+    store(c.distance + i, true_distance(first, beside / size(cosine), out, bend, s));
+    store(c.bend + i, bend);
+    store(c.other + i, other);
+    store(c.is_one + i, one);
+  }
+}
+
+template <std::size_t lanes>
+void bend_shares(const CrossingLists& c) {
+  using V = typename LanesOf<lanes>::Floats;
+  for (std::size_t i = 0; i < c.count; i += lanes) {
+    const V straight = load<V>(c.share + i), moment = load<V>(c.towards + i);
+    const V bend = load<V>(c.bend + i), distance = load<V>(c.distance + i);
+    // The parabola -bend y^2 / 2 for the line, to second order.
+    const V share = straight + bend / 2 * load<V>(c.turning + i) * (1 - 0.75f * bend * distance);
+    // An edge that is out of reach parts nothing.
+    const AnswersOf<V> is_whole = (straight <= 0) | (straight >= 1);
+    store(c.share + i, choose(is_whole, straight, share));
+    store(c.towards + i, moment / straight);
+    store(c.away + i, -moment / (1 - straight));
+  }
+}
+
+}  // namespace
+}  // namespace pse::antialias

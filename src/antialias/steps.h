@@ -1,0 +1,56 @@
+// What is done for many pixels at once: the same results, for different instructions. The bodies are
+// in neighbours.h, crossing_steps.h and sample_steps.h, and steps_any.cpp and its like compile them.
+#pragma once
+
+#include "antialias/crossings.h"
+#include "antialias/tile.h"
+
+namespace pse::antialias {
+
+// Room for the search: `changes` for the samples of the area and of one row more, `found` for the
+// pixels of the tile; each with `beyond` more.
+struct SearchRoom {
+  static constexpr std::size_t beyond = 16;
+  std::int32_t* changes;
+  Pixel* found;
+};
+
+// What the program of edges said at the crossings' pixels becomes of them; see refine.cpp.
+enum class Nearness : std::int32_t { out_of_reach, one_edge, unclear };
+
+// Sum, least and largest of numbers.
+struct Summary {
+  float *sums, *lows, *highs;
+};
+
+// Lists may be read and written up to CrossingLists::beyond behind their ends.
+struct Steps {
+  // Writes the pixels that find_edge_pixels() wants and gives their number; for a reach of 1 and 2.
+  using Search = std::size_t (*)(const Tile& tile, const SearchRoom& room);
+  std::array<Search, 2> search;
+
+  // Of `count` places where the edges are `lines` (edge_outputs lists, derive.h): is an edge within
+  // `farthest`, are two within `reach` of the kernel?
+  void (*see_nearness)(const float* const* lines, std::size_t count, float reach, float farthest,
+                       Nearness* nearness);
+  // From where the crossings' edges are looked at again: a little along them, on their far sides.
+  void (*find_second_looks)(const CrossingLists& crossings, float reach, double* x, double* y);
+  // Distances, bends, others and is_one from the edges that were seen there.
+  void (*look_again)(const CrossingLists& crossings, const float* const* lines, float reach);
+  // Shares and middles of the sides from those of a straight edge: `share`, and its moment in
+  // `towards`.
+  void (*bend_shares)(const CrossingLists& crossings);
+  // The middles of the sides that the normals point to, then those of the others.
+  void (*find_sides)(const CrossingLists& crossings, double* x, double* y);
+
+  // values[k * each + i], i < each: those of number k.
+  void (*summarise)(const float* values, std::size_t count, std::size_t each,
+                    const Summary& summary);
+};
+const Steps& steps_for_any();
+const Steps& steps_for_avx2();
+const Steps& steps_for_avx512();
+// Those of this processor.
+const Steps& steps();
+
+}  // namespace pse::antialias

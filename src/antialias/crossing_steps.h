@@ -45,8 +45,8 @@ template <class V>
 }
 
 template <std::size_t lanes>
-void see_nearness(const float* const* lines, std::size_t count, float reach,
-                  float farthest, Nearness* nearness) {
+void see_nearness(const float* const* lines, std::size_t count, float reach, float farthest,
+                  Nearness* nearness) {
   using V = typename LanesOf<lanes>::Floats;
   // Where no program ran there is no normal, and no line.
   const auto distance_of = [&](std::size_t line, std::size_t i) {

@@ -20,11 +20,11 @@ struct CrossingLists {
   float *nx, *ny;
   // How much the normal turns towards the tangent (-ny, nx) per pixel along it.
   float* bend;
-  float* share;             // of the kernel on the normal's side
-  float *towards, *away;    // to the middles of the sides, along the normal
-  float* turning;           // the moment of the edge under the kernel
-  float* other;             // the distance of another edge
-  std::int32_t* is_one;     // not 0: there is but one edge
+  float* share;           // of the kernel on the normal's side
+  float *towards, *away;  // to the middles of the sides, along the normal
+  float* turning;         // the moment of the edge under the kernel
+  float* other;           // the distance of another edge
+  std::int32_t* is_one;   // not 0: there is but one edge
 
   Line line(std::size_t i) const { return {distance[i], nx[i], ny[i]}; }
   // Number `from` of the lists that blending reads becomes number `to`.

@@ -1,7 +1,7 @@
 // The comparing of neighbours (tile.h) itself, for the instructions that the including file is
 // compiled for (steps.h). Paths first, for whole rows at once, then values where paths differ, for
-// eight or sixteen pixels at once. Nothing here may be kept out of line but what is local, since the
-// linker would take one such function for all; hence no standard containers.
+// eight or sixteen pixels at once. Nothing here may be kept out of line but what is local, since
+// the linker would take one such function for all; hence no standard containers.
 #pragma once
 
 #include "antialias/lanes.h"

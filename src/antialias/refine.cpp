@@ -30,8 +30,7 @@ constexpr float least_share = 0.001f;
 void Refiner::find_crossings(CrossingLists& c, Work& work, RunStatus& status) const {
   Places& places = work.places;
   places.resize(c.count);
-  for (std::size_t i = 0; i < c.count; ++i)
-    places.x[i] = c.x[i] + 0.5, places.y[i] = c.y[i] + 0.5;
+  for (std::size_t i = 0; i < c.count; ++i) places.x[i] = c.x[i] + 0.5, places.y[i] = c.y[i] + 0.5;
   const Results& edges = edges_->run(work, status);
   const float reach = options_.filter.reach(), farthest = std::max(farthest_explained, 2 * reach);
   work.flags.resize(c.count + CrossingLists::beyond);
@@ -64,8 +63,7 @@ void Refiner::follow(CrossingLists& c, Work& work, RunStatus& status) const {
   for (std::size_t i = 0; i < c.count; ++i) {
     if (c.is_one[i] == 0) {
       const Line second = line_of(edges, 1, i);
-      work.unclear.push_back(
-          {{c.x[i], c.y[i]}, {c.line(i), {c.other[i], second.nx, second.ny}}});
+      work.unclear.push_back({{c.x[i], c.y[i]}, {c.line(i), {c.other[i], second.nx, second.ny}}});
     }
     const float share = c.share[i];
     c.move(i, kept);
@@ -113,7 +111,8 @@ void Refiner::blend(const Tile& tile, const CrossingLists& c, Refined& result, W
     if (one_way | strange)
       for (std::size_t o = 0; o < outputs_ && !doubt; ++o) {
         const float a = sides[o][i], b = sides[o][count + i];
-        doubt = (one_way && differ(a, b)) || (strange && differ(on_a ? a : b, tile.planes[o][here]));
+        doubt =
+            (one_way && differ(a, b)) || (strange && differ(on_a ? a : b, tile.planes[o][here]));
       }
     if (doubt) {
       work.unclear.push_back({{c.x[i], c.y[i]}});

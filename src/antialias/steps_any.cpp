@@ -6,8 +6,13 @@
 namespace pse::antialias {
 
 const Steps& steps_for_any() {
-  static constexpr Steps these = {{search<8, 1>, search<8, 2>}, see_nearness<4>, find_second_looks,
-                                  look_again<4>, bend_shares<4>, find_sides, summarise};
+  static constexpr Steps these = {{search<8, 1>, search<8, 2>},
+                                  see_nearness<4>,
+                                  find_second_looks,
+                                  look_again<4>,
+                                  bend_shares<4>,
+                                  find_sides,
+                                  summarise};
   return these;
 }
 

@@ -6,8 +6,13 @@
 namespace pse::antialias {
 
 const Steps& steps_for_avx2() {
-  static constexpr Steps these = {{search<8, 1>, search<8, 2>}, see_nearness<8>, find_second_looks,
-                                  look_again<8>, bend_shares<8>, find_sides, summarise};
+  static constexpr Steps these = {{search<8, 1>, search<8, 2>},
+                                  see_nearness<8>,
+                                  find_second_looks,
+                                  look_again<8>,
+                                  bend_shares<8>,
+                                  find_sides,
+                                  summarise};
   return these;
 }
 

@@ -6,8 +6,13 @@
 namespace pse::antialias {
 
 const Steps& steps_for_avx512() {
-  static constexpr Steps these = {{search<16, 1>, search<16, 2>}, see_nearness<16>, find_second_looks,
-                                  look_again<16>, bend_shares<16>, find_sides, summarise};
+  static constexpr Steps these = {{search<16, 1>, search<16, 2>},
+                                  see_nearness<16>,
+                                  find_second_looks,
+                                  look_again<16>,
+                                  bend_shares<16>,
+                                  find_sides,
+                                  summarise};
   return these;
 }
 

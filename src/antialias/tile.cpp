@@ -18,7 +18,8 @@ std::span<const Pixel> find_edge_pixels(const Tile& tile, const Filter& filter, 
   grow(found.changes, samples + SearchRoom::beyond);
   grow(found.pixels, pixels + SearchRoom::beyond);
   const auto reach = static_cast<std::size_t>(apron_of(filter));
-  const std::size_t count = steps().search[reach - 1](tile, {found.changes.data(), found.pixels.data()});
+  const std::size_t count =
+      steps().search[reach - 1](tile, {found.changes.data(), found.pixels.data()});
   return std::span(found.pixels).first(count);
 }
 

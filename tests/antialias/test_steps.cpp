@@ -1,0 +1,170 @@
+// What is done for many pixels at once (src/antialias/steps.h) gives the same bits whichever
+// instructions it is compiled for, and sums what a loop sums.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "antialias/steps.h"
+
+namespace pse::antialias {
+namespace {
+
+// Those that this processor can run.
+std::vector<const Steps*> runnable() {
+  std::vector<const Steps*> all = {&steps_for_any()};
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("avx2") != 0) all.push_back(&steps_for_avx2());
+#endif
+  if (&steps() == &steps_for_avx512()) all.push_back(&steps_for_avx512());
+  return all;
+}
+
+constexpr std::size_t beyond = CrossingLists::beyond;
+
+std::vector<std::uint32_t> bits_of(const float* values, std::size_t count) {
+  std::vector<std::uint32_t> bits(count);
+  std::memcpy(bits.data(), values, count * sizeof(float));
+  return bits;
+}
+
+class StepsOfAntialiasing : public testing::Test {
+ protected:
+  float number(float low, float high) {
+    return std::uniform_real_distribution<float>(low, high)(random_);
+  }
+  // Mostly ordinary numbers; now and then what a program may also give.
+  float any_number() {
+    constexpr float inf = std::numeric_limits<float>::infinity();
+    const float strange[] = {0, -0.0f, inf, -inf, std::numeric_limits<float>::quiet_NaN(), 1e30f};
+    const auto which = std::uniform_int_distribution<std::size_t>(0, 60)(random_);
+    return which < std::size(strange) ? strange[which] : number(-2, 2);
+  }
+  std::mt19937 random_{7};
+};
+
+TEST_F(StepsOfAntialiasing, SearchForTheSamePixels) {
+  for (const int width : {1, 7, 16, 33, 64})
+    for (const int reach : {1, 2})
+      for (const bool has_ends : {false, true}) {
+        Tile tile;
+        tile.rect = {0, 0, width, 9};
+        tile.area = {-reach, -reach, width + reach, 9 + reach};
+        tile.outputs = 2;
+        const auto samples = static_cast<std::size_t>(tile.area.width()) *
+                             static_cast<std::size_t>(tile.area.height());
+        std::vector<std::vector<float>> planes(has_ends ? 4 : 3, std::vector<float>(samples + 64));
+        std::vector<float> ids(samples + 64);
+        for (std::size_t i = 0; i < samples; ++i) {
+          planes[0][i] = any_number(), planes[1][i] = number(0, 1) < 0.6f ? 0.5f : any_number();
+          planes[2][i] = number(0, 1) < 0.7f ? 3 : std::floor(number(0, 2000));
+          if (has_ends) planes[3][i] = number(0, 1) < 0.7f ? 1 : number(0, 2);
+          ids[i] = number(0, 1) < 0.8f ? 1 : 2;
+        }
+        std::vector<float*> pointers;
+        for (auto& plane : planes) pointers.push_back(plane.data());
+        tile.planes = pointers;
+        if (has_ends) tile.ids = ids.data();
+        std::vector<std::vector<Pixel>> found;
+        for (const Steps* steps : runnable()) {
+          std::vector<std::int32_t> changes(samples + static_cast<std::size_t>(tile.area.width()) +
+                                            SearchRoom::beyond);
+          std::vector<Pixel> pixels(samples + SearchRoom::beyond);
+          pixels.resize(steps->search[static_cast<std::size_t>(reach) - 1](
+              tile, {changes.data(), pixels.data()}));
+          found.push_back(pixels);
+        }
+        EXPECT_GT(found[0].size(), 0u);
+        for (const auto& pixels : found) {
+          ASSERT_EQ(pixels.size(), found[0].size());
+          for (std::size_t i = 0; i < pixels.size(); ++i) {
+            const Pixel &a = pixels[i], &b = found[0][i];
+            EXPECT_TRUE(a.x == b.x && a.y == b.y && a.silhouette == b.silhouette &&
+                        a.narrow == b.narrow && a.untold == b.untold);
+          }
+        }
+      }
+}
+
+TEST_F(StepsOfAntialiasing, FollowEdgesToTheSameBits) {
+  constexpr std::size_t count = 53;
+  constexpr float reach = 0.5f;
+  std::vector<std::vector<float>> lines(edge_outputs, std::vector<float>(count + beyond));
+  std::vector<const float*> pointers;
+  for (auto& list : lines) {
+    for (float& value : list) value = any_number();
+    pointers.push_back(list.data());
+  }
+  Crossings first;
+  const CrossingLists start = first.lists(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float angle = number(0, 6.3f);
+    start.x[i] = static_cast<std::int32_t>(i), start.y[i] = 3;
+    start.distance[i] = number(-0.6f, 0.6f);
+    start.nx[i] = std::cos(angle), start.ny[i] = std::sin(angle);
+    // Half of them see nearly the same edge again.
+    if (i % 2 == 0)
+      lines[0][i] = number(-0.1f, 0.1f), lines[1][i] = start.nx[i], lines[2][i] = start.ny[i];
+    start.share[i] = number(0, 1), start.towards[i] = number(0, 1);
+    start.turning[i] = number(0, 1);
+  }
+  std::vector<std::vector<std::uint32_t>> bits;
+  for (const Steps* steps : runnable()) {
+    Crossings room;
+    CrossingLists c = room.lists(count);
+    c.count = count;
+    for (std::size_t i = 0; i < count; ++i) {
+      c.x[i] = start.x[i], c.y[i] = start.y[i], c.distance[i] = start.distance[i];
+      c.nx[i] = start.nx[i], c.ny[i] = start.ny[i], c.share[i] = start.share[i];
+      c.towards[i] = start.towards[i], c.turning[i] = start.turning[i];
+    }
+    std::vector<Nearness> nearness(count + beyond);
+    steps->see_nearness(pointers.data(), count, reach, 1.7f, nearness.data());
+    std::vector<double> x(2 * count + beyond), y(x.size()), sides_x(x.size()), sides_y(x.size());
+    steps->find_second_looks(c, reach, x.data(), y.data());
+    steps->look_again(c, pointers.data(), reach);
+    steps->bend_shares(c);
+    steps->find_sides(c, sides_x.data(), sides_y.data());
+    std::vector<std::uint32_t> all;
+    for (const float* list : {c.distance, c.bend, c.share, c.towards, c.away, c.other}) {
+      const auto some = bits_of(list, count);
+      all.insert(all.end(), some.begin(), some.end());
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      all.push_back(static_cast<std::uint32_t>(nearness[i]));
+      all.push_back(static_cast<std::uint32_t>(c.is_one[i]));
+      for (const double place : {x[i], y[i], sides_x[i], sides_y[count + i]})
+        all.push_back(static_cast<std::uint32_t>(__builtin_bit_cast(std::uint64_t, place) >> 12));
+    }
+    bits.push_back(all);
+    EXPECT_TRUE(std::ranges::count(nearness, Nearness::unclear) > 0);
+    EXPECT_TRUE(std::ranges::any_of(std::span(c.is_one, count), [](auto one) { return one != 0; }));
+  }
+  for (const auto& some : bits) EXPECT_EQ(some, bits[0]);
+}
+
+TEST_F(StepsOfAntialiasing, SumUpSamples) {
+  for (const std::size_t each : {std::size_t{1}, std::size_t{5}, std::size_t{8}, std::size_t{24}})
+    for (const std::size_t count : {std::size_t{1}, std::size_t{8}, std::size_t{21}}) {
+      std::vector<float> values(count * each);
+      for (float& value : values) value = std::floor(number(-100, 100));
+      std::vector<float> sums(count + beyond), lows(count + beyond), highs(count + beyond);
+      for (const Steps* steps : runnable()) {
+        steps->summarise(values.data(), count, each, {sums.data(), lows.data(), highs.data()});
+        for (std::size_t k = 0; k < count; ++k) {
+          const std::span<const float> of(&values[k * each], each);
+          // Whole numbers: no order of adding rounds.
+          float sum = 0;
+          for (const float value : of) sum += value;
+          EXPECT_EQ(sums[k], sum);
+          EXPECT_EQ(lows[k], std::ranges::min(of));
+          EXPECT_EQ(highs[k], std::ranges::max(of));
+        }
+      }
+    }
+}
+
+}  // namespace
+}  // namespace pse::antialias

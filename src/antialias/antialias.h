@@ -9,6 +9,8 @@
 //   programs   compiling both
 //   tile       neighbours with different paths, across which the picture jumps
 //   refine     one edge: both sides and the kernel's share (filter); more: supersample (spread)
+//   steps      what is done for many pixels at once, compiled for each kind of processor
+//              (neighbours, crossing_steps, sample_steps)
 //   places     running a program anywhere (stream/sample_source.h)
 //   stored     where samples are known at pixels only: conditions laid open (force), their values
 //              fitted to neighbours (fit)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "antialias/dither.h"
 #include "passes/passes.h"
 #include "passes/rewrite.h"
 #include "passes/slice.h"
@@ -15,18 +16,6 @@ using ir::Instruction;
 using ir::Op;
 using ir::Region;
 using ir::Value;
-
-// Which values depend on the pixel's own number, px and py, and so have no value between pixels:
-// those that would still differ from sample to sample if nothing but px and py did.
-std::vector<bool> made_of_pixels(ir::Module module) {
-  for (ir::Input& input : module.inputs)
-    input.rate = input.name == "px" || input.name == "py" ? ir::Rate::sample : ir::Rate::frame;
-  passes::assign_rates(module);
-  std::vector<bool> found;
-  for (const ir::ValueInfo& value : module.main().values)
-    found.push_back(value.rate == ir::Rate::sample);
-  return found;
-}
 
 // All instructions but those inside of dither.
 template <class Visit>
@@ -190,9 +179,9 @@ Decisions find_decisions(ir::Module& module) {
   found.forks.resize(main.values.size());
   found.bends.resize(main.values.size());
   passes::Slice bends(main);
-  // Dither is no edge: what decides by px and py decides anew in each pixel, and a ray marcher with
-  // a jittered step does so all along its way.
-  found.dithered = made_of_pixels(module);
+  // Dither is no edge: it decides anew in each pixel, and a ray marcher with a jittered step does so
+  // all along its way.
+  found.dithered = find_dither(module);
   const auto differs = [&](const Instruction& in) {
     return main.values[in.result()].rate == ir::Rate::sample && !found.dithered[in.result()];
   };

@@ -24,13 +24,13 @@ Cut cut_of(ir::Op op);
 struct Decisions {
   std::vector<bool> forks;     // jumps, and min and max: a steep clamp is an edge to the eye
   std::vector<bool> bends;     // abs where some jump depends on it: it bends an edge
-  std::vector<bool> dithered;  // what depends on px and py: none of these is an edge
+  std::vector<bool> dithered;  // what depends on chance (dither.h): none of these is an edge
   std::vector<bool> searched;  // the conditions of loops that search
   std::vector<bool> ends;      // the results of these that are used
   bool any = false;            // whether there is a fork
   bool any_jump = false;
 
-  // Whether an if or a loop goes its way by px and py, and with it all that stands inside.
+  // Whether an if or a loop goes its way by chance, and with it all that stands inside.
   bool is_dither(const ir::Instruction& in) const {
     if (in.op != ir::Op::if_ && in.op != ir::Op::loop) return false;
     const ir::Value by = in.op == ir::Op::if_ ? in.operands[0] : in.regions[0].yields[0];

@@ -74,19 +74,63 @@ void expect_slopes(const std::string& text, double x, double y, double tolerance
 }
 
 TEST(Derive, EveryOperatorAndFunction) {
-  for (const char* expression :
-       {"x + y", "x - y", "2 - x", "x - 3", "x * y", "3 * x * x", "x / y", "1 / x", "y / 3",
-        "fma(x, y, x)", "-x", "abs(x - 2 * y)", "sqrt(x + y)", "min(x, y)", "max(x * x, y)",
-        "floor(x) * y", "round(x) + y", "ceil(x) * x", "trunc(x) * y", "fract(3 * x) * y",
-        "mod(5 * x, 0.7 + y)", "select(x < y, x * x, y * y)", "sin(3 * x * y)", "cos(x - 2 * y)",
-        "tan(x * y)", "asin(x * y)", "acos(x * y)", "atan(x / y)", "atan2(x, y)", "sinh(x * y)",
-        "cosh(x * y)", "cosh(2 * x + y)", "tanh(x - y)", "exp(x * y)", "exp2(x - y)",
-        "expm1(x * y)", "log(x + y)", "log2(x * y)", "log10(x + y)", "log1p(x * y)",
-        "pow(x, 2.5)", "pow(2 + x, y)", "x ^ 3", "cbrt(x - 2 * y)", "hypot(x, y)",
-        "Noise(4 * x, 3 * y)", "Noise(4 * x, 3 * y, x * y)", "unoise(x, y)", "noise1985(x, 3 * y)",
-        "noise1989(3 * x, y, 2)", "sum(Dnoise(3 * x, y, 0.3))", "sum(vnoise(2 * x, y, 0.5))",
-        "Noise(2 * x, y, period = 4, seed = 3)", "length([x y 1])", "smoothstep(0, 1, x * y)",
-        "bias(0.3, x)", "gain(0.7, y)"})
+  for (const char* expression : {"x + y",
+                                 "x - y",
+                                 "2 - x",
+                                 "x - 3",
+                                 "x * y",
+                                 "3 * x * x",
+                                 "x / y",
+                                 "1 / x",
+                                 "y / 3",
+                                 "fma(x, y, x)",
+                                 "-x",
+                                 "abs(x - 2 * y)",
+                                 "sqrt(x + y)",
+                                 "min(x, y)",
+                                 "max(x * x, y)",
+                                 "floor(x) * y",
+                                 "round(x) + y",
+                                 "ceil(x) * x",
+                                 "trunc(x) * y",
+                                 "fract(3 * x) * y",
+                                 "mod(5 * x, 0.7 + y)",
+                                 "select(x < y, x * x, y * y)",
+                                 "sin(3 * x * y)",
+                                 "cos(x - 2 * y)",
+                                 "tan(x * y)",
+                                 "asin(x * y)",
+                                 "acos(x * y)",
+                                 "atan(x / y)",
+                                 "atan2(x, y)",
+                                 "sinh(x * y)",
+                                 "cosh(x * y)",
+                                 "cosh(2 * x + y)",
+                                 "tanh(x - y)",
+                                 "exp(x * y)",
+                                 "exp2(x - y)",
+                                 "expm1(x * y)",
+                                 "log(x + y)",
+                                 "log2(x * y)",
+                                 "log10(x + y)",
+                                 "log1p(x * y)",
+                                 "pow(x, 2.5)",
+                                 "pow(2 + x, y)",
+                                 "x ^ 3",
+                                 "cbrt(x - 2 * y)",
+                                 "hypot(x, y)",
+                                 "Noise(4 * x, 3 * y)",
+                                 "Noise(4 * x, 3 * y, x * y)",
+                                 "unoise(x, y)",
+                                 "noise1985(x, 3 * y)",
+                                 "noise1989(3 * x, y, 2)",
+                                 "sum(Dnoise(3 * x, y, 0.3))",
+                                 "sum(vnoise(2 * x, y, 0.5))",
+                                 "Noise(2 * x, y, period = 4, seed = 3)",
+                                 "length([x y 1])",
+                                 "smoothstep(0, 1, x * y)",
+                                 "bias(0.3, x)",
+                                 "gain(0.7, y)"})
     for (const auto& [x, y] : {std::pair(0.31, 0.43), std::pair(0.62, 0.27)})
       expect_slopes(std::string("c = ") + expression + "\n", x, y);
 }
@@ -108,8 +152,9 @@ TEST(Derive, BranchesLoopsFunctionsAndArraysCarrySlopes) {
     for (const auto& [x, y] : {std::pair(0.31, 0.43), std::pair(0.62, 0.27)}) {
       std::string program = text;
       if (program.find("function h") != std::string::npos)
-        program = "function twice(g, p)\n    return g(g(p))\nfunction h(p)\n    return p * p + "
-                  "p\nc = twice(h, x * y)\n";
+        program =
+            "function twice(g, p)\n    return g(g(p))\nfunction h(p)\n    return p * p + "
+            "p\nc = twice(h, x * y)\n";
       expect_slopes(program, x, y, 5e-3);
     }
 }
@@ -140,7 +185,7 @@ Edges edges_at(const std::string& text, float x, float y) {
                         : input.name == "v"   ? y
                         : input.name == "u$x" ? 1
                         : input.name == "v$y" ? 1
-                                               : 0;
+                                              : 0;
     inputs.emplace_back(16, value);
     state.uniforms.push_back(value);
   }
@@ -177,8 +222,8 @@ TEST(Edges, TheSameLineFromBothSidesOrAtAnotherScaleCountsOnce) {
 
 TEST(Edges, TheNearestTwoOfSeveralInAnyOrder) {
   for (const char* order : {"3 7 4", "4 3 7", "7 4 3", "3 4 7", "4 7 3", "7 3 4"}) {
-    const std::string text = std::string("c = 0\nfor e in [") + order +
-                             "]\n    if u < e\n        c += 1\n";
+    const std::string text =
+        std::string("c = 0\nfor e in [") + order + "]\n    if u < e\n        c += 1\n";
     expect_lines(edges_at(text, 3.25f, 0), 0.25f, 0.75f);
   }
   expect_lines(edges_at("c = select(u < 1, 1, 0) + select(v < 1.5, 1, 0)\n", 0.75f, 1.125f), 0.25f,
@@ -198,17 +243,18 @@ TEST(Edges, KinksCountWhereTheyBendAnEdgeAndOnlyThere) {
   const Edges corner = edges_at("c = select(max(u - 5, v - 5) < 0, 1, 0)\n", 4.75f, 4.5f);
   expect_lines(corner, 0.25f * std::sqrt(0.5f), 0.25f);
   expect_lines(edges_at("c = abs(u - 5) + select(u < 9, 1, 0)\n", 4.75f, 4.5f), 4.25f, no_edge);
-  expect_lines(edges_at("c = select(abs(u - 5) - v < 0, 1, 0)\n", 4.75f, 4.75f),
-               0.25f, 4.5f * std::sqrt(0.5f));
+  expect_lines(edges_at("c = select(abs(u - 5) - v < 0, 1, 0)\n", 4.75f, 4.75f), 0.25f,
+               4.5f * std::sqrt(0.5f));
 }
 
 TEST(Edges, ConditionsOfLoopsAndEarlyReturnsAreSeen) {
   expect_lines(edges_at("n = 0\n_v = u\nwhile _v < 5\n    _v += 1\n    n += 1\nc = n\n", 3.25f, 0),
                0.25f, 0.75f);
-  expect_lines(edges_at("function f(p)\n    if p < 2\n        return 1\n    if p < 3\n        return "
-                        "2\n    return 3\nc = f(u)\n",
-                        2.25f, 0),
-               0.25f, 0.75f);
+  expect_lines(
+      edges_at("function f(p)\n    if p < 2\n        return 1\n    if p < 3\n        return "
+               "2\n    return 3\nc = f(u)\n",
+               2.25f, 0),
+      0.25f, 0.75f);
 }
 
 TEST(Edges, NoiseIsNoEdgeAndAJumpOfNoiseIs) {
@@ -218,12 +264,33 @@ TEST(Edges, NoiseIsNoEdgeAndAJumpOfNoiseIs) {
   CompiledFront jump = lowered("c = select(Noise(u, v) < 0.1, 1, 0)\n");
   passes::remove_dead(jump.module);
   EXPECT_TRUE(find_decisions(jump.module).any);
-  CompiledFront dither = lowered("c = select(hash(px, py) < u, 1, 0)\n");
-  passes::remove_dead(dither.module);
-  EXPECT_FALSE(find_decisions(dither.module).any);
   CompiledFront frame = lowered("c = u\nif frame > 3\n    c = v\n");
   passes::remove_dead(frame.module);
   EXPECT_FALSE(find_decisions(frame.module).any);
+}
+
+bool decides(const char* text) {
+  CompiledFront front = lowered(text);
+  passes::remove_dead(front.module);
+  return find_decisions(front.module).any;
+}
+
+TEST(Dither, ChancesOfAPixelAreNoEdges) {
+  EXPECT_FALSE(decides("c = select(hash(px, py) < u, 1, 0)\n"));
+  EXPECT_FALSE(decides("c = select(hash(floor(px)) < 0.3, 1, 0)\n"));
+  EXPECT_FALSE(decides("c = select(floor(px) % 2 < 1, 1, 0)\n"));
+  EXPECT_FALSE(decides("c = select(fract(43758.5 * sin(12.99 * px + 78.2 * py)) < u, 1, 0)\n"));
+  EXPECT_FALSE(decides("c = select(fract(52.98 * fract(0.067 * px + 0.0058 * py)) < u, 1, 0)\n"));
+  // A ray that begins at a chance goes by it all its way.
+  EXPECT_FALSE(decides("d = hash(px, py)\nwhile d < 5\n    d += 1\nc = d\n"));
+}
+
+TEST(Dither, PlacesInPixelsAreAsGoodAsOthers) {
+  EXPECT_TRUE(decides("c = select(px > 3.2, 1, 0)\n"));
+  EXPECT_TRUE(decides("c = select(fract(px / 4) < 0.5, 1, 0)\n"));
+  EXPECT_TRUE(decides("c = select(norm([px py] / 100 - 1) < 0.5, 1, 0)\n"));
+  EXPECT_TRUE(decides("c = select(hash(u) < 0.5 + px, 1, 0)\n"));
+  EXPECT_TRUE(decides("c = select(u < 0.5, 1, 0) + hash(px, py)\n"));
 }
 
 }  // namespace

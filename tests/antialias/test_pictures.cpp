@@ -14,7 +14,9 @@ namespace {
 using enum FilterKind;
 constexpr double one_step = 1.0 / 255;
 
-// Pixels as numbers that are no pixel numbers: px and py stand for dither.
+// Places in pixels.
+std::string axes() { return "_x = px\n_y = py\n"; }
+// The same from places in the picture.
 std::string axes(int size) {
   return "_x = u * " + std::to_string(size) + "\n_y = (1 - v) * " + std::to_string(size) + "\n";
 }
@@ -22,13 +24,14 @@ std::string axes(int size) {
 std::string text(double value) { return "(" + std::to_string(value) + ")"; }
 
 // Worst difference from the exact share of a half-plane at many angles and distances.
-double worst_half_plane(FilterKind kind, const Options& options) {
+double worst_half_plane(FilterKind kind, const Options& options,
+                        const std::string& names = axes(24)) {
   double worst = 0;
   for (int step = 0; step < 24; ++step) {
     const double angle = (step * 15 + 3.7) * std::numbers::pi / 180;
     const double nx = std::cos(angle), ny = std::sin(angle), out = 12.3 + 0.037 * step;
     const Picture picture =
-        render(axes(24) + "c = select((_x - 12) * " + text(nx) + " + (_y - 12) * " + text(ny) + " > " +
+        render(names + "c = select((_x - 12) * " + text(nx) + " + (_y - 12) * " + text(ny) + " > " +
                    text(out - 12) + ", 1, 0)\n",
                {.width = 24, .height = 24, .interpret = true, .antialias = options});
     for (int y = 0; y < 24; ++y)
@@ -45,6 +48,7 @@ double worst_half_plane(FilterKind kind, const Options& options) {
 TEST(Pictures, HalfPlanesAtEveryAngleAreExact) {
   for (const FilterKind kind : {cubic, box, disc, cone, paraboloid, gauss})
     EXPECT_LT(worst_half_plane(kind, procedural(kind)), one_step / 2) << int(kind);
+  EXPECT_LT(worst_half_plane(cubic, procedural(), axes()), one_step / 2);
   EXPECT_GT(worst_half_plane(cubic, plain()), 0.4);  // what the test would find
 }
 
@@ -53,8 +57,8 @@ TEST(Pictures, DiscsFromLargeToSmallAreExact) {
     for (const double shift : {0.0, 0.31}) {
       const double cx = 16 + shift, cy = 16 - shift / 2;
       const Picture picture =
-          render(axes(32) + "c = select((_x - " + text(cx) + ") ^ 2 + (_y - " + text(cy) + ") ^ 2 < " +
-                     text(radius * radius) + ", 1, 0)\n",
+          render(axes(32) + "c = select((_x - " + text(cx) + ") ^ 2 + (_y - " + text(cy) +
+                     ") ^ 2 < " + text(radius * radius) + ", 1, 0)\n",
                  {.interpret = true, .antialias = procedural()});
       double worst = 0;
       for (int y = 0; y < 32; ++y)
@@ -70,27 +74,33 @@ TEST(Pictures, DiscsFromLargeToSmallAreExact) {
 
 // Programs whose edges nest, bend, meet, come from loops, returns, whole numbers.
 const std::vector<std::pair<const char*, const char*>> programs = {
-    {"nested", "f = (u - .5) ^ 2 + (v - .5) ^ 2 - .3 ^ 2\nif f > 0\n    c = Noise(8 * u, 8 * v)\n"
-               "else\n    if sin(20 * u + Noise(u, v) / 10) * sin(20 * v + Noise(u, v) / 10) > 0\n"
-               "        c = .5 + Noise(3 * u, v)\n    else\n        c = 0.1\n"},
+    {"nested",
+     "f = (u - .5) ^ 2 + (v - .5) ^ 2 - .3 ^ 2\nif f > 0\n    c = Noise(8 * u, 8 * v)\n"
+     "else\n    if sin(20 * u + Noise(u, v) / 10) * sin(20 * v + Noise(u, v) / 10) > 0\n"
+     "        c = .5 + Noise(3 * u, v)\n    else\n        c = 0.1\n"},
     {"checker", "z = 1 / (1.3 - y)\na = floor(6 * x * z) + floor(6 * z)\nc = mod(a, 2)\n"},
-    {"returns", "function f(p)\n    if p.x * p.y > 0.1\n        return 1\n    if length(p) < 0.4\n"
-                "        return 0.5\n    return 0.2 * p.x\nc = f([x y])\n"},
-    {"loop", "c = 0\nfor i in [1 .. 6]\n    if length([x - i / 4 + 0.8 y]) < 0.3\n        c += "
-             "0.17\n"},
+    {"returns",
+     "function f(p)\n    if p.x * p.y > 0.1\n        return 1\n    if length(p) < 0.4\n"
+     "        return 0.5\n    return 0.2 * p.x\nc = f([x y])\n"},
+    {"loop",
+     "c = 0\nfor i in [1 .. 6]\n    if length([x - i / 4 + 0.8 y]) < 0.3\n        c += "
+     "0.17\n"},
     {"while", "n = 0\nr = length([x y]) + 0.2\nwhile r < 1\n    r *= 1.4\n    n += 1\nc = n / 5\n"},
     {"kinks", "d = max(abs(x) - 0.6, abs(y) - 0.4)\nc = saturate(1 - 300 * d)\n"},
     {"corners", "d = max(abs(x + y / 3) - 0.6, abs(y) - 0.4)\nc = select(d < 0, 1, 0)\n"},
     {"table", "t = [0.1 0.9 0.3 0.7]\nc = t[1 + floor(3.99 * u)]\n"},
-    {"array", "a = array(4)\nfor i in [1 .. 4]\n    a[i] = length([x - i / 3 + 0.8 y - 0.1])\nc = 0\n"
-              "for d in a\n    if d < 0.25\n        c += 0.3\n"},
+    {"array",
+     "a = array(4)\nfor i in [1 .. 4]\n    a[i] = length([x - i / 3 + 0.8 y - 0.1])\nc = 0\n"
+     "for d in a\n    if d < 0.25\n        c += 0.3\n"},
     {"noise", "c = 0.2\nif Noise(3 * x, 3 * y) > 0.1 and x + y < 0.8\n    c = 1\n"},
     // Towards the horizon whole squares lie between two samples.
-    {"horizon", "h = 0.35 - y\nc = 0.5\nif h > 0\n    d = 0.5 / h\n    s = floor(0.9 * x * d + 0.4 * d) + "
-                "floor(0.9 * d - 0.4 * x * d)\n    c = mix(mod(s, 2), 0.5, 1 - exp(-0.04 * d))\n"},
-    {"march", "function ball(p)\n    return norm(p - [0 0 3]) - 0.8\nt = 1\nd = direction([x y 3])\n"
-              "for i in [1 .. 60]\n    s = ball(t * d)\n    t += s\n    if s < 0.0005 or t > 5 break\n"
-              "c = t > 5 ? 0.1 : 1.6 - 0.4 * t\nif t < 5 and sin(9 * t * d.x) > 0\n    c += 0.3\n"},
+    {"horizon",
+     "h = 0.35 - y\nc = 0.5\nif h > 0\n    d = 0.5 / h\n    s = floor(0.9 * x * d + 0.4 * d) + "
+     "floor(0.9 * d - 0.4 * x * d)\n    c = mix(mod(s, 2), 0.5, 1 - exp(-0.04 * d))\n"},
+    {"march",
+     "function ball(p)\n    return norm(p - [0 0 3]) - 0.8\nt = 1\nd = direction([x y 3])\n"
+     "for i in [1 .. 60]\n    s = ball(t * d)\n    t += s\n    if s < 0.0005 or t > 5 break\n"
+     "c = t > 5 ? 0.1 : 1.6 - 0.4 * t\nif t < 5 and sin(9 * t * d.x) > 0\n    c += 0.3\n"},
     {"pow", "c = select(pow(abs(x), 2.5) + pow(abs(y), 2.5) < 0.5, 1, 0)\n"},
 };
 
@@ -135,7 +145,8 @@ TEST(Pictures, TheSameBitsInEveryPiece) {
 TEST(Pictures, WhatHasNoEdgesIsLeftAlone) {
   for (const char* program :
        {"c = Noise(5 * x, 5 * y)\n", "c = turbulence([x y])\n", "c = abs(x) + max(x, 0.1 * x)\n",
-        "_t = 0\n_d = 1\nwhile _d > 0.1\n    _d -= 0.013 + 0.01 * u\n    _t += 0.013 + 0.01 * u\nc = u + "
+        "_t = 0\n_d = 1\nwhile _d > 0.1\n    _d -= 0.013 + 0.01 * u\n    _t += 0.013 + 0.01 * u\nc "
+        "= u + "
         "0 * _t\n",
         "c = u\nif x < 0\n    c = u + 0 * x\n"}) {
     const Picture none = render(program, {.antialias = plain()});
@@ -212,8 +223,8 @@ TEST(Pictures, WhatLiesBetweenTheSamplesIsSeen) {
 
 TEST(Pictures, EdgesAtThePicturesBorderAreSeen) {
   // The pixel's centre and all its neighbours in the picture are on one side.
-  const Picture picture =
-      render(axes(4) + "c = select(_x < 0.25, 1, 0)\n", {.width = 4, .height = 4, .antialias = procedural()});
+  const Picture picture = render(axes(4) + "c = select(_x < 0.25, 1, 0)\n",
+                                 {.width = 4, .height = 4, .antialias = procedural()});
   const float exact = 1 - Filter().share(0.25f, 1, 0);
   for (int y = 0; y < 4; ++y) EXPECT_NEAR(picture.at(0, y), exact, one_step / 4);
 }
@@ -230,15 +241,16 @@ TEST(Pictures, ChecksFailOnlyForPixelsOfThePicture) {
 
 TEST(Pictures, AValueThatOneSideCannotComputeStaysThere) {
   // Outside the disc the root is NaN: both sides are run where they belong.
-  const Picture picture = render(
-      "r = length([x y])\nc = 0\nif r < 0.7\n    c = sqrt(0.49 - r * r)\n", {.antialias = procedural()});
+  const Picture picture =
+      render("r = length([x y])\nc = 0\nif r < 0.7\n    c = sqrt(0.49 - r * r)\n",
+             {.antialias = procedural()});
   for (const float value : picture.plane()) EXPECT_FALSE(std::isnan(value));
 }
 
 TEST(Pictures, TheMeanOfASlopeOnEachSide) {
   // c = x on one side, 2 + x on the other: blending at the sides' middles is exact for slopes.
-  const Picture picture =
-      render(axes(32) + "c = 0.3 * _x\nif _x > 7.8\n    c = 2 + 0.3 * _x\n", {.antialias = procedural()});
+  const Picture picture = render(axes(32) + "c = 0.3 * _x\nif _x > 7.8\n    c = 2 + 0.3 * _x\n",
+                                 {.antialias = procedural()});
   const double share = Filter().share(-0.3f, 1, 0);
   EXPECT_NEAR(picture.at(7, 9), 0.3 * 7.5 + 2 * share, 1e-3);
 }

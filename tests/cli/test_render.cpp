@@ -380,6 +380,18 @@ TEST_F(Render, SignalsStopCleanlyAndLeaveTheOldFile) {
   }
 }
 
+// Other formats are read in a forked process, where a lock that a thread of ours held at that moment
+// would never open. It used to happen in one of twenty runs.
+TEST_F(Render, ForeignPicturesAreReadEveryTime) {
+  file("a.pse", "color = [u v 0.5]\n");
+  ASSERT_EQ(pse({"render", "a.pse", "-o", "a.tif", "--res", "64x64"}).status, 0);
+  file("b.pse", "color = 1 - color\n");
+  for (int i = 0; i < 8; ++i) {
+    const Ended ended = pse({"render", "b.pse", "a.tif", "-o", "b.tif"});
+    ASSERT_EQ(ended.status, 0) << ended.err;
+  }
+}
+
 // 12 million pixels of 12 bytes are too many to be kept: every third of every third row is.
 TEST_F(Render, ASnapshotOfALargePictureIsThinned) {
   file("half.pse", "i = 0\nif v < 0.5\n    while i < 1e30\n        i = i + v\ncolor = [px i py]\n");

@@ -76,9 +76,10 @@ function(pse_folder name)
   endif()
 endfunction()
 
-# pse_tests(name [USES folder...] [LINKS target...]): one GoogleTest program of all .cpp files here.
+# pse_tests(name [APART] [USES folder...] [LINKS target...]): one GoogleTest program of all .cpp files here.
+# APART: names in the unnamed namespaces of its files are the same, so they are never compiled several at a time.
 function(pse_tests name)
-  cmake_parse_arguments(arg "" "" "USES;LINKS" ${ARGN})
+  cmake_parse_arguments(arg "APART" "" "USES;LINKS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   if(NOT sources)
     return()
@@ -89,15 +90,22 @@ function(pse_tests name)
     target_link_libraries(test_${name} PRIVATE pse_${used})
   endforeach()
   target_compile_definitions(test_${name} PRIVATE PSE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
-  # Helpers of tests are named for their file alone, so these cannot be compiled several at a time.
-  set_target_properties(test_${name} PROPERTIES UNITY_BUILD OFF)
+  # A test runs its own lines once; what they call is optimised as always.
+  target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  # A file's helpers may hide those of another.
+  if(arg_APART)
+    set_target_properties(test_${name} PROPERTIES UNITY_BUILD OFF)
+  else()
+    set_target_properties(test_${name} PROPERTIES
+                          UNITY_BUILD_CODE_BEFORE_INCLUDE "#pragma GCC diagnostic ignored \"-Wshadow\"")
+  endif()
   if(PSE_PRECOMPILE)
     if(NOT TARGET pse_precompiled_tests)
       pse_precompile(pse_precompiled_tests <gtest/gtest.h>)
       target_link_libraries(pse_precompiled_tests PRIVATE GTest::gtest_main)
       # As programs are compiled, not libraries.
       set_target_properties(pse_precompiled_tests PROPERTIES POSITION_INDEPENDENT_CODE OFF)
-      target_compile_options(pse_precompiled_tests PRIVATE -fPIE)
+      target_compile_options(pse_precompiled_tests PRIVATE -fPIE $<$<CONFIG:Release>:-O1>)
     endif()
     target_compile_options(test_${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
     target_precompile_headers(test_${name} REUSE_FROM pse_precompiled_tests)

@@ -1,5 +1,5 @@
 // Completion scripts. Each shell gets the commands, their options, the choices of a value, and
-// files of the right kind; a program's knobs are asked from `pse info`.
+// files of the right kind; a program's knobs are asked from its `--help`.
 #include "app/completion.h"
 
 #include <fmt/format.h>
@@ -60,7 +60,7 @@ _pse() {
 )BASH";
   out += fmt::format(
       "  if [[ $COMP_CWORD == 1 ]]; then\n    COMPREPLY=($(compgen -W $'{}\\n--version\\n--help' "
-      "-- \"$word\"))\n    $restore\n    return\n  fi\n",
+      "-- \"$word\"))\n    eval \"$restore\"\n    return\n  fi\n",
       fmt::join(names_of_commands(), "\\n"));
   out += "  case ${COMP_WORDS[1]} in\n";
   for (const CommandSpec& command : commands()) {
@@ -72,10 +72,10 @@ _pse() {
       if (!takes_value(option)) continue;
       const std::string letter = option.letter.empty() ? "" : fmt::format("|-{}", option.letter);
       const std::string reply =
-          option.choices.empty()
+          proposed(option).empty()
               ? bash_offer(option.offer)
-              : fmt::format("compgen -W $'{}' -- \"$word\"", fmt::join(option.choices, "\\n"));
-      out += fmt::format("    --{}{}) COMPREPLY=($({})); $restore; return ;;\n", option.name,
+              : fmt::format("compgen -W $'{}' -- \"$word\"", fmt::join(proposed(option), "\\n"));
+      out += fmt::format("    --{}{}) COMPREPLY=($({})); eval \"$restore\"; return ;;\n", option.name,
                          letter, reply);
     }
     out += "    esac\n";
@@ -90,7 +90,7 @@ _pse() {
     out += fmt::format("    else COMPREPLY=($({}{})); fi ;;\n", arguments,
                        command.name == "render" ? "; _pse_knobs" : "");
   }
-  out += "  esac\n  $restore\n}\ncomplete -o filenames -o nospace -F _pse pse\n";
+  out += "  esac\n  eval \"$restore\"\n}\ncomplete -o filenames -o nospace -F _pse pse\n";
   return out;
 }
 
@@ -110,7 +110,7 @@ std::string zsh_text(std::string_view text) {
 }
 
 std::string zsh_offer(const OptionSpec& option) {
-  if (!option.choices.empty()) return fmt::format("({})", fmt::join(option.choices, " "));
+  if (!proposed(option).empty()) return fmt::format("({})", fmt::join(proposed(option), " "));
   switch (option.offer) {
     case Offer::directory:
       return "_files -/";
@@ -183,8 +183,8 @@ std::string fish_script() {
       out += fmt::format("{} -l {}", here, option.name);
       if (!option.letter.empty()) out += fmt::format(" -s {}", option.letter);
       if (takes_value(option))
-        out += option.offer == Offer::nothing || !option.choices.empty() ? " -x" : " -r";
-      if (!option.choices.empty()) out += fmt::format(" -a '{}'", fmt::join(option.choices, " "));
+        out += option.offer == Offer::nothing || !proposed(option).empty() ? " -x" : " -r";
+      if (!proposed(option).empty()) out += fmt::format(" -a '{}'", fmt::join(proposed(option), " "));
       out += fmt::format(" -d '{}'\n", fish_text(option.help));
     }
   }

@@ -1,7 +1,7 @@
 // Handing tiles to the writers.
 #include "app/frame_writer.h"
 
-#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "app/provenance.h"
@@ -10,8 +10,33 @@
 namespace pse::app {
 namespace {
 
-// Pictures with more than this are not kept in memory for snapshots.
-constexpr std::int64_t most_snapshot_bytes = std::int64_t{128} << 20;
+// What is kept in memory for snapshots: all of a picture up to the first size, of larger ones as
+// many pixels as the second allows.
+constexpr std::int64_t whole_snapshot_bytes = std::int64_t{128} << 20;
+constexpr std::int64_t thinned_snapshot_bytes = std::int64_t{32} << 20;
+
+std::int64_t bytes_of(const image::ImageSpec& spec) {
+  return spec.data.pixels() * static_cast<std::int64_t>(spec.channels.size() * sizeof(float));
+}
+
+// The first multiple of step that is not below `at`, in steps.
+int steps_to(int at, int step) {
+  const int quotient = at / step;
+  return quotient + (at > 0 && at % step != 0 ? 1 : 0);
+}
+
+// The places of the pixels whose coordinates are multiples of step.
+image::Window thinned(const image::Window& window, int step) {
+  return {steps_to(window.x0, step), steps_to(window.y0, step), steps_to(window.x1, step),
+          steps_to(window.y1, step)};
+}
+
+// The step of a snapshot, 1 for all pixels.
+int snapshot_step(const image::ImageSpec& spec) {
+  const double bytes = static_cast<double>(bytes_of(spec));
+  if (bytes <= static_cast<double>(whole_snapshot_bytes)) return 1;
+  return static_cast<int>(std::ceil(std::sqrt(bytes / thinned_snapshot_bytes)));
+}
 
 // All of it is about outputs: a format that there is not, or that cannot hold this, was asked for.
 [[noreturn]] void throw_failure(const image::ImageError& error) {
@@ -46,16 +71,21 @@ FrameWriter::FrameWriter(const std::vector<PlannedFile>& files, int frame,
     spec.data = data_;
     for (const PlannedChannel& channel : plan.channels) spec.channels.push_back(channel.channel);
 
-    File file{&plan,   *image::frame_name(plan.pattern, frame),
-              nullptr, std::make_shared<image::NanReport>(),
-              nullptr, {}};
+    File file{.plan = &plan,
+              .name = *image::frame_name(plan.pattern, frame),
+              .writer = nullptr,
+              .report = std::make_shared<image::NanReport>(),
+              .planes = {},
+              .copy = nullptr};
     auto writer = open(files_.size(), file.name, spec);
     if (!writer) throw_failure(writer.error());
     file.writer = image::with_nan_policy(std::move(*writer), nan, file.report);
-    const std::int64_t bytes =
-        data_.pixels() * static_cast<std::int64_t>(spec.channels.size() * sizeof(float));
-    if (bytes <= most_snapshot_bytes && file.name != "-" && !plan.is_film())
+    if (file.name != "-" && !plan.is_film()) {
+      file.step = snapshot_step(spec);
+      spec.data = thinned(spec.data, file.step);
+      spec.display = thinned(spec.display, file.step);
       file.copy = std::make_unique<image::Image>(spec);
+    }
     files_.push_back(std::move(file));
   }
 }
@@ -71,28 +101,35 @@ void FrameWriter::add(const TileView& tile) {
     if (const auto done = file.writer->write_tile(place, file.planes); !done)
       throw_failure(done.error());
 
-    // Keep a copy for snapshots.
     if (!file.copy) continue;
     const std::lock_guard lock(copying_);
-    for (std::size_t c = 0; c < file.planes.size(); ++c)
-      for (int row = 0; row < tile.rect.height(); ++row)
-        std::copy_n(file.planes[c] + std::ptrdiff_t{row} * tile.rect.width(), tile.rect.width(),
-                    file.copy->planes[c].begin() +
-                        std::int64_t{tile.rect.y0 + row - window_.y0} * window_.width() +
-                        (tile.rect.x0 - window_.x0));
+    keep(file, place);
   }
 }
 
-std::vector<std::string> FrameWriter::write_snapshots() {
-  std::vector<std::string> names;
+// Copies what a snapshot shows of the tile at `place`.
+void FrameWriter::keep(File& file, const image::Window& place) {
+  image::Image& copy = *file.copy;
+  const image::Window kept = thinned(place, file.step), &whole = copy.spec.data;
+  for (std::size_t c = 0; c < file.planes.size(); ++c)
+    for (int y = kept.y0; y < kept.y1; ++y) {
+      const float* from = file.planes[c] + std::int64_t{y * file.step - place.y0} * place.width();
+      float* to = copy.planes[c].data() + std::int64_t{y - whole.y0} * whole.width();
+      for (int x = kept.x0; x < kept.x1; ++x) to[x - whole.x0] = from[x * file.step - place.x0];
+    }
+}
+
+std::vector<Snapshot> FrameWriter::write_snapshots() {
+  std::vector<Snapshot> snapshots;
   const std::lock_guard lock(copying_);
   for (const File& file : files_) {
     if (!file.copy) continue;
-    names.push_back(snapshot_name(file.name));
-    if (const auto done = image::write_image(names.back(), *file.copy, file.plan->write); !done)
+    snapshots.push_back({snapshot_name(file.name), file.step});
+    if (const auto done = image::write_image(snapshots.back().name, *file.copy, file.plan->write);
+        !done)
       throw_failure(done.error());
   }
-  return names;
+  return snapshots;
 }
 
 std::vector<std::string> FrameWriter::close() {

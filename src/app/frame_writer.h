@@ -22,6 +22,11 @@ struct NotFiniteChannel {
 using OpenWriter = std::function<image::Result<std::unique_ptr<image::ImageWriter>>(
     std::size_t file, const std::string& name, const image::ImageSpec& spec)>;
 
+struct Snapshot {
+  std::string name;
+  int step = 1;  // it holds every step-th pixel of every step-th row
+};
+
 class FrameWriter {
  public:
   // `display` is the picture's place in file coordinates and `window` the part of it that is
@@ -34,9 +39,9 @@ class FrameWriter {
   // Takes tiles in order, one at a time. Throws Failure: `output`, or `strict` for NaN under --nan
   // error.
   void add(const TileView& tile);
-  // Writes what has come so far beside each target, as NAME.snapshot.EXT; may be called while tiles
-  // come. Returns the names; none for pictures too large to be kept in memory.
-  std::vector<std::string> write_snapshots();
+  // Writes what has come so far beside each target, as NAME.snapshot.EXT, of large pictures every
+  // nth pixel; may be called while tiles come. None for films and standard output.
+  std::vector<Snapshot> write_snapshots();
   // Puts the files in their places and returns their names. Throws as add().
   std::vector<std::string> close();
 
@@ -48,9 +53,12 @@ class FrameWriter {
     std::string name;
     std::unique_ptr<image::ImageWriter> writer;
     std::shared_ptr<image::NanReport> report;
-    std::unique_ptr<image::Image> copy;  // for snapshots
     std::vector<const float*> planes;    // of the tile at hand
+    std::unique_ptr<image::Image> copy;  // for snapshots
+    int step = 1;                        // of the copy
   };
+
+  static void keep(File& file, const image::Window& place);
 
   Rect window_;
   image::Window data_;

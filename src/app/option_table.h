@@ -28,6 +28,7 @@ struct OptionSpec {
   std::vector<std::string_view> choices = {};  // all values there are; empty: any
   Offer offer = Offer::nothing;
   std::string_view environment = {};  // the variable that sets it too
+  std::vector<std::string_view> proposals = {};  // some of the values, where there are others too
 };
 
 struct CommandSpec {
@@ -39,6 +40,11 @@ struct CommandSpec {
   std::vector<OptionSpec> options;
   std::vector<std::pair<std::string_view, std::string_view>> examples;  // command, what it does
 };
+
+// What shells propose for a value: its choices, or its proposals.
+inline const std::vector<std::string_view>& proposed(const OptionSpec& option) {
+  return option.choices.empty() ? option.proposals : option.choices;
+}
 
 std::span<const CommandSpec> commands();
 const CommandSpec* find_command(std::string_view name);

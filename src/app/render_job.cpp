@@ -276,9 +276,12 @@ antialias::Options RenderJob::antialias() const {
 
 void RenderJob::write_snapshots(FrameWriter& writer) {
   try {
-    const std::vector<std::string> names = writer.write_snapshots();
-    if (names.empty()) session_.console.warning("the picture is too large for snapshots");
-    for (const std::string& name : names) session_.console.note(fmt::format("wrote {}", name));
+    const std::vector<Snapshot> snapshots = writer.write_snapshots();
+    if (snapshots.empty())
+      session_.console.warning("there are no snapshots of films and of standard output");
+    for (const auto& [name, step] : snapshots)
+      session_.console.note(step == 1 ? fmt::format("wrote {}", name)
+                                      : fmt::format("wrote {}, 1 of {}x{} pixels", name, step, step));
   } catch (const Failure& failure) {
     session_.console.warning(failure.what());  // the job goes on
   }
@@ -326,7 +329,9 @@ void RenderJob::report_not_finite(const FrameWriter& writer) {
         fmt::format(
             "`{}` is NaN at {} and infinite at {} pixels, first at ({}, {}) of frame {:.0f}", name,
             found.nan, found.infinite, found.x, found.y, plane_.frame),
-        "--nan black, box3 or error says what to do with them");
+        options_.nan == image::NanPolicy::keep
+            ? "--nan black, box3 or error says what to do with them"
+            : "");
   }
   if (!diagnostics.all().empty()) progress_.finish();
   report(diagnostics, sources_, session_);

@@ -231,8 +231,9 @@ class Loader {
                                     static_cast<std::uint64_t>(entry.r_addend);
         std::memcpy(place, &value, sizeof value);
       } else if (type == R_X86_64_PC32 || type == R_X86_64_PLT32) {
-        const std::int64_t value = static_cast<std::int64_t>(symbol) + entry.r_addend -
-                                   static_cast<std::int64_t>(target + entry.r_offset);
+        // Unsigned, since a damaged object may say any number.
+        const auto value = static_cast<std::int64_t>(
+            symbol + static_cast<std::uint64_t>(entry.r_addend) - (target + entry.r_offset));
         const auto narrow = static_cast<std::int32_t>(value);
         if (narrow != value) return false;
         std::memcpy(place, &narrow, sizeof narrow);

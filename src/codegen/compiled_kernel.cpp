@@ -43,6 +43,8 @@ void CompiledKernel::run_frame(FrameState& state, RunStatus& status) const {
 void CompiledKernel::run_samples(const FrameState& state, RunStatus& status, Scratch& scratch,
                                  const float* const* inputs, float* const* outputs,
                                  std::int64_t count) const {
+  samples_run_.fetch_add(count, std::memory_order_relaxed);
+
   // Scratch: the arrays of a vector of samples, what the code wants for itself, then buffers for
   // the last, partly filled vector.
   const auto width = static_cast<std::size_t>(width_);

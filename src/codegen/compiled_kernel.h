@@ -2,6 +2,8 @@
 // Made by compile.cpp; run by stream/.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 
 #include "codegen/array_layout.h"
@@ -25,6 +27,8 @@ class CompiledKernel final : public Kernel {
   void run_samples(const FrameState& state, RunStatus& status, Scratch& scratch,
                    const float* const* inputs, float* const* outputs,
                    std::int64_t count) const override;
+  // As the optimised tier's; the first tier's are counted by who holds its code.
+  TierSamples tier_samples() const override { return {0, samples_run_}; }
 
  private:
   CompiledKernel(const passes::SplitModule& split, CodeObject code, int width,
@@ -40,6 +44,7 @@ class CompiledKernel final : public Kernel {
   SampleArrayLayout sample_layout_;
   std::size_t own_floats_;
   KernelEntry samples_ = nullptr;
+  mutable std::atomic<std::int64_t> samples_run_{0};
 };
 
 }  // namespace pse

@@ -71,7 +71,7 @@ class Kernel {
   virtual void run_samples(const FrameState& state, RunStatus& status, Scratch& scratch,
                            const float* const* inputs, float* const* outputs,
                            std::int64_t count) const = 0;
-  // So far; nothing where there are no tiers.
+  // So far; the interpreter counts nothing.
   virtual TierSamples tier_samples() const { return {}; }
 };
 

@@ -128,19 +128,21 @@ class ExrReader : public ImageReader {
     if (type.starts_with("deep")) throw Iex::InputExc("deep data is not read");
     Part part{Imf::InputPart(file_, index), exr::window_of(header.dataWindow()), {}};
 
-    // A channel's name gets the part's in front, unless it says it already or it is the picture's
-    // own colour.
+    // A channel's name gets the part's in front, unless it says it already, or it is the picture's
+    // own colour, or it names a layer itself (`N.X` of a part `normals`), or it is the depth.
     const std::string prefix = file_.parts() > 1 ? prefix_of(header, view) : "";
+    const bool own_view = !header.hasView() || header.view() == view;
     const auto& list = header.channels();
     bool plain = false;
-    if (!has_root_colour_ &&
-        (list.findChannel("R") != nullptr || list.findChannel("Y") != nullptr) &&
-        (!header.hasView() || header.view() == view))
+    if (!has_root_colour_ && own_view &&
+        (list.findChannel("R") != nullptr || list.findChannel("Y") != nullptr))
       plain = has_root_colour_ = true;
     for (auto c = list.begin(); c != list.end(); ++c) {
       std::string name = c.name();
       const bool said = name.starts_with(prefix + ".") || (!plain && name == prefix);
-      if (!prefix.empty() && !said && !plain) name = prefix + "." + name;
+      const bool whole = own_view && spec_.find(name) < 0 &&
+                         (name == "Z" || name.find('.') != std::string::npos);
+      if (!prefix.empty() && !said && !plain && !whole) name = prefix + "." + name;
       while (spec_.find(name) >= 0) name = "part" + std::to_string(index + 1) + "." + name;
       const auto& channel = c.channel();
       const PixelType pixel = channel.type == Imf::HALF    ? PixelType::float16

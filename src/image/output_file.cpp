@@ -21,11 +21,13 @@ namespace {
 
 constexpr std::size_t buffer_bytes = std::size_t{1} << 18;
 
-ImageError write_error(const std::string& name, int code) {
+// replaces: a file would have been put in another's place; devices and pipes keep nothing.
+ImageError write_error(const std::string& name, int code, bool replaces) {
   const bool full = code == ENOSPC || code == EDQUOT || code == EFBIG;
   if (full)
-    return {ErrorKind::disk_full, "no room to write " + name + " (" + std::strerror(code) +
-                                      "); what was there before is unchanged"};
+    return {ErrorKind::disk_full,
+            "no room to write " + name + " (" + std::strerror(code) + ")" +
+                (replaces ? "; what was there before is unchanged" : "")};
   return {ErrorKind::cannot_write, "cannot write " + name + ": " + std::strerror(code)};
 }
 
@@ -57,7 +59,7 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool sync) {
   // content at the end.
   if (path == "-") {
     out.device_ = ::dup(STDOUT_FILENO);
-    if (out.device_ < 0) return std::unexpected(write_error(out.name_, errno));
+    if (out.device_ < 0) return std::unexpected(write_error(out.name_, errno, false));
   } else {
     out.target_ = path;
     if (char* real = ::realpath(path.c_str(), nullptr)) {
@@ -69,12 +71,12 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool sync) {
       if (S_ISDIR(about.st_mode))
         return fail(ErrorKind::cannot_write, "cannot write " + path + ": it is a folder");
       if (::access(out.target_.c_str(), W_OK) != 0)
-        return std::unexpected(write_error(path, errno));
+        return std::unexpected(write_error(path, errno, false));
       if (S_ISREG(about.st_mode)) {
         out.mode_ = about.st_mode & 07777u;
       } else {
         out.device_ = ::open(out.target_.c_str(), O_WRONLY | O_CLOEXEC);
-        if (out.device_ < 0) return std::unexpected(write_error(path, errno));
+        if (out.device_ < 0) return std::unexpected(write_error(path, errno, false));
         out.target_.clear();
       }
     }
@@ -94,10 +96,13 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool sync) {
   }
   if (out.file_ < 0) {
     const int code = errno;
+    std::error_code none;
     if (code == ENOENT || code == ENOTDIR)
       return fail(ErrorKind::cannot_write,
-                  "cannot write " + path + ": the folder " + folder + " does not exist");
-    return std::unexpected(write_error(out.name_, code));
+                  "cannot write " + path + ": the folder " + folder +
+                      (std::filesystem::is_directory(folder, none) ? " takes no files"
+                                                                   : " does not exist"));
+    return std::unexpected(write_error(out.name_, code, !out.target_.empty()));
   }
   out.buffer_.reserve(buffer_bytes);
   return out;
@@ -130,7 +135,9 @@ void OutputFile::discard() {
   temporary_.clear();
 }
 
-ImageError OutputFile::error() const { return write_error(name_, errno_ == 0 ? EIO : errno_); }
+ImageError OutputFile::error() const {
+  return write_error(name_, errno_ == 0 ? EIO : errno_, !target_.empty());
+}
 
 bool OutputFile::flush() {
   if (errno_ != 0) return false;

@@ -130,7 +130,7 @@ Result<std::unique_ptr<ImageWriter>> open_writer(const std::string& path, const 
   Result<std::unique_ptr<ImageWriter>> writer =
       fail(ErrorKind::unsupported,
            "the name " + shown +
-               " does not say a format that can be written; use .exr, .png, .jpg, .tif or .csv");
+               " does not say a format that can be written; use .exr, .png, .jpg, .tif, .csv or .mp4");
   if (format == "csv") writer = open_csv_writer(path, framed, options);
   if (format == "png") writer = open_png_writer(path, framed, options);
   if (is_foreign_format(format)) writer = open_foreign_writer(path, format, framed, options);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
+#include <string_view>
 
 #include "diag/utf8.h"
 #include "lang/layout.h"
@@ -131,6 +133,7 @@ class Scanner {
   bool space_ = true;         // white space before what comes next
   bool tab_ = false, blank_before_tab_ = false, blank_ = false;
   bool open_comment_ = true;  // a `*/` may still follow
+  std::set<std::string_view> foreign_names_;  // reported
 
   // Whether the text is too wrong, or too long, to be read to its end.
   bool given_up() {
@@ -244,7 +247,8 @@ class Scanner {
   void scan_word() {
     const char c = peek();
     if (is_digit(c) || (c == '.' && is_digit(peek(1)) && !after_value())) return scan_number();
-    if (is_letter(c)) return scan_name();
+    const bool pi = text_.substr(at_).starts_with("\u03c0");
+    if (is_letter(c) || (!pi && foreign_letter(at_) > 0)) return scan_name();
     if (c == '"' || c == '\'') return scan_string();
     scan_symbol();
   }
@@ -292,16 +296,41 @@ class Scanner {
     emit(TokenKind::number, begin, suffix);
   }
 
+  // A letter of another alphabet at `at`: its length in bytes, else 0.
+  std::size_t foreign_letter(std::size_t at) const {
+    if (at >= text_.size() || static_cast<unsigned char>(text_[at]) < 0x80) return 0;
+    const Utf8Character c = utf8_decode(text_, at);
+    const auto in = [&](char32_t first, char32_t last) { return c.code >= first && c.code <= last; };
+    const bool letter = in(0xb5, 0xb5) || (in(0xc0, 0x24f) && c.code != 0xd7 && c.code != 0xf7) ||
+                        in(0x300, 0x1fff) || in(0x3041, 0xd7ff) || in(0x20000, 0x3ffff);
+    return c.valid && letter ? c.length : 0;
+  }
+
+  // A name, of other letters too: the parser goes on with it, so that it is reported once, and not
+  // what follows from it.
   void scan_name() {
     const std::size_t begin = at_;
-    while (is_word(peek())) ++at_;
+    std::size_t foreign = text_.size();
+    while (at_ < text_.size()) {
+      const std::size_t length = is_word(peek()) ? 1 : foreign_letter(at_);
+      if (length == 0) break;
+      if (!is_word(peek())) foreign = std::min(foreign, at_);
+      at_ += length;
+    }
     if (at_ - begin > longest_name) {
       diagnostics_.error("name-too-long", span(begin, at_),
                          "this name has more than " + std::to_string(longest_name) + " characters",
                          "choose a shorter name");
       return emit(TokenKind::invalid, begin, at_);
     }
-    emit(keyword(text_.substr(begin, at_ - begin)), begin, at_);
+    const std::string_view name = text_.substr(begin, at_ - begin);
+    if (foreign < at_ && foreign_names_.insert(name).second)
+      diagnostics_.error(
+          "bad-character", span(begin, at_),
+          "`" + std::string(text_.substr(foreign, utf8_decode(text_, foreign).length)) +
+              "` does not belong to the language",
+          "names are made of the letters a-z, A-Z, digits and `_`");
+    emit(keyword(name), begin, at_);
   }
 
   void scan_string() {

@@ -151,6 +151,9 @@ ModuleScope* Lowering::load_module(const std::string& name, const Span& span) {
             "hides-library", span,
             "this is " + sources_.file(*file).name + ", not the library's module `" + name + "`",
             "rename the file to import the library's; its functions are found without an import");
+      if (sources_.file(*file).text == sources_.file(span.file).text)
+        warning("imports-itself", span, "`" + name + "` is this file itself",
+                "what it defines is known without an import");
       imported_.push_back(adopt(*file, name));
       return imported_.back();
     }
@@ -303,6 +306,20 @@ void Lowering::read_meta(Knob& knob, const AssignStmt& assign) {
   }
   if (knob.min && knob.max && *knob.min > *knob.max)
     error("meta-value", knob.span, "the range of knob `" + knob.name + "` ends before it begins");
+  else
+    check_range(knob);
+}
+
+// The program's own value should be one that the knob says it takes.
+void Lowering::check_range(const Knob& knob) {
+  const std::string its = "the value of knob `" + knob.name + "` is ";
+  if (!knob.options.empty() && std::ranges::find(knob.options, knob.text) == knob.options.end())
+    warning("knob-range", knob.span, its + "none of its options");
+  const auto any = [&](const auto& wrong) { return std::ranges::any_of(knob.value, wrong); };
+  if (knob.min && any([&](float value) { return value < *knob.min; }))
+    warning("knob-range", knob.span, its + "below its minimum");
+  if (knob.max && any([&](float value) { return value > *knob.max; }))
+    warning("knob-range", knob.span, its + "above its maximum");
 }
 
 // ---- Outputs ------------------------------------------------------------------------------------

@@ -64,6 +64,7 @@ class Lowering {
   void declare_knob(const lang::AssignStmt& assign, const std::string& name, const Span& span,
                     ModuleScope& scope);
   void read_meta(Knob& knob, const lang::AssignStmt& assign);
+  void check_range(const Knob& knob);
   void make_outputs(Lowered& result);
   const StreamName* stream_name(const std::string& name) const;
   Typed read_stream(const StreamName& name);

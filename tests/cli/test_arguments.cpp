@@ -1,4 +1,6 @@
 // Words of the command line: help, versions, unknown things, wrong values of every kind.
+#include <cstdlib>
+
 #include "run_pse.h"
 
 namespace pse::test {
@@ -161,6 +163,23 @@ TEST_F(Arguments, CompletionsAndManPagesKnowEveryOption) {
     }
   }
   EXPECT_EQ(pse({"completion", "tcsh"}).status, 2);
+}
+
+// The script, run by the shell as a Tab would: nothing may be said on the terminal.
+TEST_F(Arguments, BashCompletesWithoutAWord) {
+  if (std::system("command -v bash >/dev/null") != 0) GTEST_SKIP() << "there is no bash";
+  file("c.bash", pse({"completion", "bash"}).out +
+                     "complete_line() { COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); COMPREPLY=(); "
+                     "_pse; echo \"${COMPREPLY[*]}\"; }\n"
+                     "complete_line pse ren\n"
+                     "complete_line pse render a.pse --nan b\n"
+                     "complete_line pse render a.pse --resu\n"
+                     "complete_line pse render a.pse --antialias p\n");
+  const std::string run =
+      "cd '" + folder().string() + "' && bash --norc c.bash >out.txt 2>err.txt";
+  ASSERT_EQ(std::system(run.c_str()), 0);
+  EXPECT_EQ(read("err.txt"), "");
+  EXPECT_EQ(read("out.txt"), "render\nblack box3\n--resume\nprocedural\n");
 }
 
 TEST_F(Arguments, TheManualPagesDateIsFixedBySourceDateEpoch) {

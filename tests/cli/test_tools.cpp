@@ -116,6 +116,20 @@ TEST_F(Tools, FilesBesideTheProgramHideTheLibrarys) {
   EXPECT_TRUE(contains(ended.err, "hides-library"));
 }
 
+TEST_F(Tools, WhatContradictsItselfIsQuestioned) {
+  file("a.pse", "import a\nPower = 7 [[ min = 0, max = 5 ]]\nMode = 'x' [[ options = 'y|z' ]]\n"
+                "Tint = [0 0.5 2] [[ max = 1 ]]\nFine = 5 [[ min = 0, max = 5 ]]\n"
+                "color = Power * Tint * Fine\n");
+  const Ended ended = pse({"check", "a.pse"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  for (const char* part : {"a.pse:1:8: warning: `a` is this file itself",
+                           "a.pse:2:1: warning: the value of knob `Power` is above its maximum",
+                           "a.pse:3:1: warning: the value of knob `Mode` is none of its options",
+                           "a.pse:4:1: warning: the value of knob `Tint` is above its maximum"})
+    EXPECT_TRUE(contains(ended.err, part));
+  EXPECT_FALSE(contains(ended.err, "Fine"));
+}
+
 TEST_F(Tools, MissingNamesAreToldWhereTheyComeFrom) {
   file("a.pse", "color = white * normal.z\n");
   EXPECT_TRUE(contains(pse({"render", "a.pse", "-o", "a.png"}).err, "--on sphere"));

@@ -30,6 +30,17 @@ TEST(ExrKinds, PartsAndViews) {
   EXPECT_EQ(layer_names((*right)->spec()), "color Z left_rgba ");
 }
 
+// Parts `beauty` (R G B A), `normals` (N.X N.Y N.Z) and `depth` (Z): a channel that says
+// its layer keeps it.
+TEST(ExrKinds, PartsWhoseChannelsSayTheirLayer) {
+  const auto image = read_image(corpus + "named_parts.exr");
+  ASSERT_TRUE(image) << message_of(image);
+  EXPECT_EQ(layer_names(image->spec), "color alpha Z N ");
+  for (const char* name : {"N.X", "N.Y", "N.Z", "Z"}) ASSERT_GE(image->spec.find(name), 0) << name;
+  EXPECT_EQ(image->at(image->spec.find("N.Y"), 3, 1), 0.25f);
+  EXPECT_EQ(image->at(image->spec.find("Z"), 7, 3), 5.0f);
+}
+
 TEST(ExrKinds, ViewsOfTheRealSequence) {
   PSE_REAL_FILE(path, "singlepart.0001.exr");
   ReadOptions options;

@@ -19,7 +19,7 @@ Result<Image> read_text(const std::string& name, const std::string& text) {
   return read_image(**reader, {});
 }
 
-std::string message_of(const std::string& text) {
+std::string refusal_of(const std::string& text) {
   const auto image = read_text("t.csv", text);
   return image ? "no error" : image.error().message;
 }
@@ -64,21 +64,21 @@ TEST(Csv, LongFilesAreReadInBlocks) {
 }
 
 TEST(Csv, ErrorsNameTheLine) {
-  EXPECT_EQ(message_of("a,b\n1,2\n\n3\n"),
+  EXPECT_EQ(refusal_of("a,b\n1,2\n\n3\n"),
             "t.csv:4: the row has fewer numbers than the 2 columns that the first line names");
-  EXPECT_EQ(message_of("a,b\n1,2,3\n"),
+  EXPECT_EQ(refusal_of("a,b\n1,2,3\n"),
             "t.csv:2: the row has more numbers than the 2 columns that the first line names");
-  EXPECT_EQ(message_of("a,b\n1,two\n"), "t.csv:2: `two` in column `b` is no number");
-  EXPECT_EQ(message_of("a,b\n1,2x\n"), "t.csv:2: `2x` in column `b` is no number");
-  EXPECT_EQ(message_of("a,b\n1,\n"), "t.csv:2: column `b` is empty");
+  EXPECT_EQ(refusal_of("a,b\n1,two\n"), "t.csv:2: `two` in column `b` is no number");
+  EXPECT_EQ(refusal_of("a,b\n1,2x\n"), "t.csv:2: `2x` in column `b` is no number");
+  EXPECT_EQ(refusal_of("a,b\n1,\n"), "t.csv:2: column `b` is empty");
   for (const char* word : {"nan", "-inf", "1e99"})
-    EXPECT_NE(message_of(std::string("a\n") + word + "\n").find("t.csv:2: `"), std::string::npos);
-  EXPECT_EQ(message_of("1,2\n3,4\n"),
+    EXPECT_NE(refusal_of(std::string("a\n") + word + "\n").find("t.csv:2: `"), std::string::npos);
+  EXPECT_EQ(refusal_of("1,2\n3,4\n"),
             "t.csv:1: the first line of a table names its columns, `1` is a number");
-  EXPECT_EQ(message_of("a,a\n1,2\n"), "t.csv:1: two columns are called `a`");
-  EXPECT_EQ(message_of("a,b\n"), "t.csv names its columns and has no rows");
-  EXPECT_EQ(message_of("# nothing\n"), "t.csv is empty");
-  EXPECT_EQ(message_of("a,b\n1,\x01\x02\n"), "t.csv:2: `??` in column `b` is no number");
+  EXPECT_EQ(refusal_of("a,a\n1,2\n"), "t.csv:1: two columns are called `a`");
+  EXPECT_EQ(refusal_of("a,b\n"), "t.csv names its columns and has no rows");
+  EXPECT_EQ(refusal_of("# nothing\n"), "t.csv is empty");
+  EXPECT_EQ(refusal_of("a,b\n1,\x01\x02\n"), "t.csv:2: `??` in column `b` is no number");
 }
 
 TEST(Csv, WhatIsWrittenIsReadAgain) {

@@ -94,6 +94,11 @@ TEST(Refused, OneMistakeIsOneError) {
   EXPECT_EQ(Parsed("a = \u201chello\u201d").summary(), "1:5 foreign-spelling");
   EXPECT_EQ(Parsed("a = 1 " + std::string(5000, '@')).summary(), "1:7 bad-character");
   EXPECT_EQ(Parsed("a = " + std::string(1000000, 'a')).summary(), "1:5 name-too-long");
+  // A name in other letters is one mistake, wherever it stands.
+  EXPECT_EQ(Parsed("gr\u00f6\u00dfe = 3\nif gr\u00f6\u00dfe > 2\n    b = gr\u00f6\u00dfe\n"
+                   "\u00e9t\u00e9 = \u6c34\n")
+                .summary(),
+            "1:1 bad-character, 4:1 bad-character, 4:9 bad-character");
   for (const char* opener : {"(", "[", "if a {"}) {
     std::string text = "a = 1\nb = ";
     if (*opener == 'i') text = "a = 1\n";

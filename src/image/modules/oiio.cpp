@@ -3,7 +3,11 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <iterator>
 #include <memory>
+#include <thread>
 
 #include "image/foreign.h"
 
@@ -150,16 +154,32 @@ class OiioWriter : public ForeignWriter {
   std::unique_ptr<OIIO::ImageOutput> file_;
 };
 
-class OiioImages : public ForeignImages {
- public:
-  OiioImages() {
-    // Colours and decoding must not depend on how many processors there are.
+std::ptrdiff_t threads_here() {
+  return std::distance(std::filesystem::directory_iterator("/proc/self/task"), {});
+}
+
+// Colours and decoding must not depend on how many processors there are.
+void use_one_thread() {
+  static const bool done = [] {
+    const std::ptrdiff_t before = threads_here();
     OIIO::attribute("threads", 1);
     OIIO::attribute("exr_threads", -1);
-  }
+    // The library starts threads to end them. A process forked while one of these holds a lock
+    // would wait for it for ever.
+    for (int i = 0; i < 1000 && threads_here() > before; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return true;
+  }();
+  (void)done;
+}
 
+// Readers are opened in a process forked from ours (foreign_child.h). So nothing that starts threads
+// is asked of the library before: a lock that one of them held would stay locked there.
+class OiioImages : public ForeignImages {
+ public:
   ForeignReader* open(const std::string& path, std::string& error) override {
     try {
+      use_one_thread();
       OIIO::ImageSpec wanted;
       wanted["oiio:UnassociatedAlpha"] = 1;
       auto file = OIIO::ImageInput::open(path, &wanted);
@@ -182,6 +202,7 @@ class OiioImages : public ForeignImages {
                         const std::map<std::string, std::string>& attributes,
                         std::string& error) override {
     try {
+      use_one_thread();
       auto file = OIIO::ImageOutput::create(format == "ppm" ? "pnm" : format);
       if (!file) {
         error = OIIO::geterror();

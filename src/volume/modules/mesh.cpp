@@ -1,35 +1,34 @@
 // Triangle meshes as distances, by OpenVDB's conversion.
 #include <openvdb/tools/MeshToVolume.h>
 
+#include <vector>
+
 #include "volume/modules/parts.h"
 
 namespace pse::volume {
 namespace {
 
-// The mesh as the conversion asks for it, in voxels of the grid.
-class Adapter {
+// With these types the conversion stands in OpenVDB's library; others take half a minute to compile.
+using Triangles = openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I>;
+
+class Interrupter : public openvdb::util::NullInterrupter {
  public:
-  Adapter(const MeshView& mesh, const openvdb::math::Transform& transform)
-      : mesh_(mesh), transform_(transform) {}
-  std::size_t polygonCount() const { return mesh_.triangles.size(); }
-  std::size_t pointCount() const { return mesh_.points.size(); }
-  std::size_t vertexCount(std::size_t) const { return 3; }
-  void getIndexSpacePoint(std::size_t polygon, std::size_t corner, openvdb::Vec3d& place) const {
-    const auto& point = mesh_.points[mesh_.triangles[polygon][corner]];
-    place = transform_.worldToIndex(openvdb::Vec3d(point[0], point[1], point[2]));
-  }
+  explicit Interrupter(const std::function<bool()>& keep_on) : keep_on_(keep_on) {}
+  bool wasInterrupted(int) override { return keep_on_ && !keep_on_(); }
 
  private:
-  const MeshView& mesh_;
-  const openvdb::math::Transform& transform_;
+  const std::function<bool()>& keep_on_;
 };
 
-struct Interrupter {
-  const std::function<bool()>& keep_on;
-  void start(const char* = nullptr) {}
-  void end() {}
-  bool wasInterrupted(int = -1) { return keep_on && !keep_on(); }
-};
+// The mesh's points in voxels of the grid.
+std::vector<openvdb::Vec3s> points_in_voxels(const MeshView& mesh,
+                                             const openvdb::math::Transform& transform) {
+  std::vector<openvdb::Vec3s> points;
+  points.reserve(mesh.points.size());
+  for (const auto& [x, y, z] : mesh.points)
+    points.emplace_back(transform.worldToIndex(openvdb::Vec3d(x, y, z)));
+  return points;
+}
 
 }  // namespace
 
@@ -38,9 +37,14 @@ Result<void> add_mesh_to(GridWriter& to, const MeshView& mesh, float band,
                          const std::function<bool()>& keep_on) {
   try {
     openvdb::FloatGrid& grid = float_grid_of(to, 0);
-    Interrupter interrupter{keep_on};
-    const auto made = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
-        interrupter, Adapter(mesh, grid.transform()), grid.transform(), band, band,
+    Interrupter interrupter(keep_on);
+    const std::vector<openvdb::Vec3s> points = points_in_voxels(mesh, grid.transform());
+    std::vector<openvdb::Vec3I> triangles;
+    triangles.reserve(mesh.triangles.size());
+    for (const auto& [a, b, c] : mesh.triangles) triangles.emplace_back(a, b, c);
+    const auto made = openvdb::tools::meshToVolume<openvdb::FloatGrid, Triangles,
+                                                   openvdb::util::NullInterrupter>(
+        interrupter, Triangles(points, triangles), grid.transform(), band, band,
         inside ? openvdb::tools::UNSIGNED_DISTANCE_FIELD : 0);
     if (inside)
       for (auto voxel = made->beginValueOn(); voxel; ++voxel) {

@@ -12,17 +12,18 @@ namespace pse::surface {
 namespace {
 
 // What Embree is told with rays, and what it keeps for each of them: the nearest triangle so far. A
-// ray's number, 0 to 7, is its `id`.
+// ray's number, below `lanes`, is its `id`.
+constexpr std::size_t most_lanes = 16;
 struct Query {
-  static constexpr std::size_t lanes = 8;
   RTCIntersectContext context;  // first: Embree hands its address on
-  float t[lanes];
-  std::uint32_t triangle[lanes];
+  std::size_t lanes;
+  float t[most_lanes];
+  std::uint32_t triangle[most_lanes];
 
-  explicit Query(bool coherent) {
+  Query(std::size_t lane_count, bool coherent) : lanes(lane_count) {
     rtcInitIntersectContext(&context);
     if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    std::fill_n(t, lanes, -1.0f);
+    std::fill_n(t, most_lanes, -1.0f);
   }
 };
 
@@ -32,17 +33,35 @@ struct Query {
 void keep_lower_number(const RTCFilterFunctionNArguments* arguments) {
   Query& query = *reinterpret_cast<Query*>(arguments->context);
   const unsigned count = arguments->N;
-  for (unsigned k = 0; k < count; ++k) {
-    if (arguments->valid[k] == 0) continue;
-    const unsigned id = RTCRayN_id(arguments->ray, count, k) % Query::lanes;
-    const float t = RTCRayN_tfar(arguments->ray, count, k);
-    const std::uint32_t triangle = RTCHitN_primID(arguments->hit, count, k);
-    if (t == query.t[id] && triangle > query.triangle[id])
-      arguments->valid[k] = 0;
-    else
-      query.t[id] = t, query.triangle[id] = triangle;
-  }
+  const float* t = &RTCRayN_tfar(arguments->ray, count, 0);
+  const std::uint32_t* triangle = &RTCHitN_primID(arguments->hit, count, 0);
+  const auto all = [&](const auto& id_of) {
+    for (unsigned k = 0; k < count; ++k) {
+      float& best_t = query.t[id_of(k)];
+      std::uint32_t& best = query.triangle[id_of(k)];
+      const bool loses = (t[k] == best_t) & (triangle[k] > best);
+      const int valid = loses ? 0 : arguments->valid[k];
+      best_t = valid != 0 ? t[k] : best_t;
+      best = valid != 0 ? triangle[k] : best;
+      arguments->valid[k] = valid;
+    }
+  };
+  if (count == query.lanes) return all([](unsigned k) { return k; });
+  // A processor with narrower vectors is given a packet's parts.
+  all([&](unsigned k) { return RTCRayN_id(arguments->ray, count, k) % most_lanes; });
 }
+
+// Packets of 8 rays and of 16.
+struct Eight {
+  using Rays = RTCRayHit8;
+  static constexpr std::size_t lanes = 8;
+  static constexpr auto intersect = rtcIntersect8;
+};
+struct Sixteen {
+  using Rays = RTCRayHit16;
+  static constexpr std::size_t lanes = 16;
+  static constexpr auto intersect = rtcIntersect16;
+};
 
 class Tree : public TriangleTree {
  public:
@@ -72,15 +91,24 @@ class Tree : public TriangleTree {
 
   void first(std::span<const Ray> rays, std::span<TriangleHit> hits) const override {
     if (rays.size() == 1) return first_alone(rays.front(), hits.front());
-    for (std::size_t begin = 0; begin < rays.size(); begin += Query::lanes) {
-      const std::size_t count = std::min(Query::lanes, rays.size() - begin);
-      first_of(rays.subspan(begin, count), hits.subspan(begin, count), rays.size() > 32);
+    // Wide packets pay where there are instructions as wide; a few rays left over go in a narrow one.
+    const bool coherent = rays.size() > 32;
+    std::size_t begin = 0;
+    if (has_wide_)
+      for (; rays.size() - begin > Eight::lanes; begin += Sixteen::lanes) {
+        const std::size_t count = std::min(Sixteen::lanes, rays.size() - begin);
+        first_of<Sixteen>(rays.subspan(begin, count), hits.subspan(begin, count), coherent);
+        if (count < Sixteen::lanes) return;
+      }
+    for (; begin < rays.size(); begin += Eight::lanes) {
+      const std::size_t count = std::min(Eight::lanes, rays.size() - begin);
+      first_of<Eight>(rays.subspan(begin, count), hits.subspan(begin, count), coherent);
     }
   }
 
  private:
   void first_alone(const Ray& ray, TriangleHit& hit) const {
-    Query context(false);
+    Query context(1, false);
     RTCRayHit query;
     query.ray = {static_cast<float>(ray.origin.x), static_cast<float>(ray.origin.y),
                  static_cast<float>(ray.origin.z), static_cast<float>(ray.begin),
@@ -92,14 +120,13 @@ class Tree : public TriangleTree {
     if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) hit.triangle = query.hit.primID;
   }
 
-  // A packet of up to eight.
+  // Up to a packet.
+  template <class Packet>
   void first_of(std::span<const Ray> rays, std::span<TriangleHit> hits, bool coherent) const {
-    Query context(coherent);
-    alignas(32) int valid[Query::lanes];
-    alignas(32) RTCRayHit8 query;
-    for (std::size_t k = 0; k < Query::lanes; ++k) {
-      const Ray& ray = rays[std::min(k, rays.size() - 1)];
-      valid[k] = k < rays.size() ? -1 : 0;
+    Query context(Packet::lanes, coherent);
+    alignas(64) int valid[Packet::lanes];
+    alignas(64) typename Packet::Rays query;
+    const auto set = [&](std::size_t k, const Ray& ray) {
       query.ray.org_x[k] = static_cast<float>(ray.origin.x);
       query.ray.org_y[k] = static_cast<float>(ray.origin.y);
       query.ray.org_z[k] = static_cast<float>(ray.origin.z);
@@ -108,19 +135,26 @@ class Tree : public TriangleTree {
       query.ray.dir_z[k] = static_cast<float>(ray.direction.z);
       query.ray.tnear[k] = static_cast<float>(ray.begin);
       query.ray.tfar[k] = static_cast<float>(ray.end);
+    };
+    for (std::size_t k = 0; k < rays.size(); ++k) set(k, rays[k]);
+    for (std::size_t k = rays.size(); k < Packet::lanes; ++k) set(k, rays.back());
+    for (std::size_t k = 0; k < Packet::lanes; ++k) {
+      valid[k] = k < rays.size() ? -1 : 0;
       query.ray.time[k] = 0;
       query.ray.mask[k] = 0xffffffff;
       query.ray.id[k] = static_cast<unsigned>(k);
       query.ray.flags[k] = 0;
       query.hit.geomID[k] = query.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+      query.hit.primID[k] = TriangleHit::no_triangle;
     }
-    rtcIntersect8(valid, scene_, &context.context, &query);
-    for (std::size_t k = 0; k < rays.size(); ++k)
-      if (query.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID) hits[k].triangle = query.hit.primID[k];
+    Packet::intersect(valid, scene_, &context.context, &query);
+    for (std::size_t k = 0; k < rays.size(); ++k) hits[k].triangle = query.hit.primID[k];
   }
 
   RTCDevice device_;
   RTCScene scene_;
+  bool has_wide_ =
+      rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
 };
 
 class Tools : public MeshTools {

@@ -29,7 +29,8 @@ struct Mesh {
 struct MeshOptions {
   bool fit = false;      // moved and scaled so that it is centred and its longest side is 2
   double crease = 60;    // degrees; where a mesh has no normals, edges sharper than this stay sharp
-  std::size_t most_triangles = 4'000'000;
+  std::size_t most_triangles = 32'000'000;         // of binary PLY
+  std::size_t most_library_triangles = 4'000'000;  // of all others, which Assimp reads
 };
 
 struct LoadedMesh {

@@ -67,7 +67,10 @@ class Tree : public TriangleTree {
  public:
   Tree(RTCDevice device, const Mesh& mesh) : device_(device), scene_(rtcNewScene(device)) {
     rtcRetainDevice(device_);
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    // Large meshes in less memory: the tree then looks corners up instead of keeping them.
+    const bool is_large = mesh.triangle_count() > 4'000'000;
+    rtcSetSceneFlags(scene_, is_large ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT
+                                      : RTC_SCENE_FLAG_ROBUST);
     const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     // Copies, since Embree reads 16 bytes at each vertex.
     void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,

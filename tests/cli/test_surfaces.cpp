@@ -227,6 +227,20 @@ TEST_F(Surfaces, AnIsosurfaceAroundAllOfItsBoxIsTold) {
   };
   EXPECT_TRUE(contains(told("blob.pse"), "is above `level` 0.5 everywhere"));
   EXPECT_EQ(told("blob.pse level=2").find("nothing is seen"), std::string::npos);
+  EXPECT_TRUE(contains(told("blob.pse level=5"), "is nowhere above `level` 5"));
+}
+
+// Settings that a shape's name runs into, and those that are taken for images.
+TEST_F(Surfaces, SettingsInAnotherSpellingAreToldHowTheyAreWritten) {
+  file("p.pse", "color = white\n");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"superquadric:north=2"}, {"superquadric", "north=2"}}) {
+    std::vector<std::string> arguments = {"render", "p.pse", "-o", "o.exr", "--on"};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    const Ended ended = pse(arguments);
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_TRUE(contains(ended.err, "\"superquadric north=2\"")) << ended.err;
+  }
 }
 
 TEST_F(Surfaces, ACameraInsideAnObjectIsTold) {

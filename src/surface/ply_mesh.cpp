@@ -4,6 +4,7 @@
 #include <array>
 
 #include "image/ply_header.h"
+#include "image/table.h"
 #include "surface/mesh_file.h"
 
 namespace pse::surface {
@@ -259,8 +260,13 @@ std::expected<bool, std::string> read_binary_ply(const std::string& file,
                                                  std::size_t most_triangles, Mesh& mesh) {
   const auto source = image::open_bytes(file, 0);
   if (!source) return std::unexpected("the file cannot be opened");
+  if (!image::is_ply(**source)) return false;
   const auto header = image::read_ply_header(**source);
-  if (!header) return false;
+  if (!header) return std::unexpected(header.error().message.substr(file.size() + 2));
+  if (std::none_of(header->elements.begin(), header->elements.end(), [](const PlyElement& element) {
+        return element.name != "vertex" && element.rows > 0;
+      }))
+    return std::unexpected("the mesh has no faces, only points; export it with faces");
   auto done = Reader(*header, **source, most_triangles, mesh).read();
   if (!done || !*done) mesh = {};
   return done;

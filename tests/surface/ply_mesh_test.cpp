@@ -120,10 +120,16 @@ TEST_F(PlyMeshes, QuadrilateralsAreCutAtTheirInwardCorner) {
 TEST_F(PlyMeshes, WhatIsForTheLibrary) {
   const std::string five = square().add(0.5f).add(2.f).add(0.f).face({0, 1, 2, 4, 3}).text;
   EXPECT_EQ(error_of(head("little", xyz, corners, 5, 1) + five), "left to the library");
-  EXPECT_EQ(error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n"),
+  EXPECT_EQ(error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nelement face 1\n"
+                     "property list uchar int vertex_indices\nend_header\n0\n3 0 0 0\n"),
             "left to the library");
-  EXPECT_EQ(error_of(head("little", "property float x\nproperty float y\n", corners, 0, 0)),
+  EXPECT_EQ(error_of("hello"), "left to the library");
+  EXPECT_EQ(error_of(head("little", "property float x\nproperty float y\n", corners, 0, 1)),
             "left to the library");
+  EXPECT_EQ(error_of(head("little", xyz, corners, 4, 0) + square().text),
+            "the mesh has no faces, only points; export it with faces");
+  EXPECT_EQ(error_of(head("little", "property quux x\n", corners, 4, 1)),
+            "`property quux x` is no property of PLY");
   EXPECT_TRUE(mesh_.positions.empty());
 }
 

@@ -184,6 +184,32 @@ TEST(Scenes, AHitOfAMeshDependsOnItsRayAlone) {
   expect_alone_as_together(Scene({{"sheets", *shape, {}, 0}}, {}), rays);
 }
 
+// Numbers that Embree does not take: from so far away nothing is met, alone and in company; a
+// direction may be as long or short as it likes.
+TEST(Scenes, RaysFromFarAwayAndOfAnyLengthAtAMesh) {
+  if (!PSE_HAS_MESHES) GTEST_SKIP() << "built without meshes";
+  auto mesh = std::make_shared<Mesh>();
+  mesh->positions = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+  mesh->triangles = {0, 1, 2};
+  const auto shape = make_mesh_shape(mesh);
+  ASSERT_TRUE(shape) << shape.error();
+  const Scene scene({{"face", *shape, {}, 0}}, {});
+  std::vector<Ray> rays;
+  for (const double far : {1e17, 1e19, 1e30, 1e200}) rays.push_back({{0, 0, far}, {0, 0, -1}});
+  for (const double length : {1e-60, 1e-19, 1.0, 1e19, 1e60})
+    rays.push_back({{0, 0, 2}, {0, 0, -length}});
+  for (int i = 0; i < 9; ++i) rays.push_back({{0, 0, 3}, {0, 0, -1}});
+  std::vector<Hit> hits(rays.size());
+  scene.trace(rays, hits);
+  for (std::size_t i = 1; i < 4; ++i) EXPECT_FALSE(hits[i].found()) << i;
+  for (std::size_t i = 4; i < 9; ++i) {
+    ASSERT_TRUE(hits[i].found()) << i;
+    EXPECT_NEAR(hits[i].t() * length(rays[i].direction), 2, 1e-9) << i;
+  }
+  for (std::size_t i = 9; i < rays.size(); ++i) EXPECT_NEAR(hits[i].t(), 3, 1e-12) << i;
+  expect_alone_as_together(scene, rays);
+}
+
 // All triangles of a ball that is there twice: of each pair, the one with the lower number is met,
 // by rays alone and in packets of either width.
 TEST(Scenes, OfTwoEqualTrianglesTheFirstIsMet) {

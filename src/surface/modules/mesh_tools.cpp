@@ -1,7 +1,8 @@
-// The module around Assimp and Embree: the only home of both, with read_mesh.cpp. Loaded by mesh.cpp,
-// on demand.
+// The module around Assimp and Embree: the only home of both, with read_mesh.cpp. Loaded by
+// mesh.cpp, on demand.
 #include <embree3/rtcore.h>
 
+#include <cmath>
 #include <cstring>
 #include <memory>
 
@@ -51,6 +52,18 @@ void keep_lower_number(const RTCFilterFunctionNArguments* arguments) {
   all([&](unsigned k) { return RTCRayN_id(arguments->ray, count, k) % most_lanes; });
 }
 
+// Embree ends the process where a ray's numbers are greater.
+constexpr float reach = 1.8e18f;
+double largest(const Vec3& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
+template <class Rays>
+bool is_in_reach(const Rays& rays, std::size_t lanes) {
+  bool all = true;
+  for (const float* numbers :
+       {rays.org_x, rays.org_y, rays.org_z, rays.dir_x, rays.dir_y, rays.dir_z})
+    for (std::size_t k = 0; k < lanes; ++k) all &= std::fabs(numbers[k]) <= reach;
+  return all;
+}
+
 // Packets of 8 rays and of 16.
 struct Eight {
   using Rays = RTCRayHit8;
@@ -69,14 +82,14 @@ class Tree : public TriangleTree {
     rtcRetainDevice(device_);
     // Large meshes in less memory: the tree then looks corners up instead of keeping them.
     const bool is_large = mesh.triangle_count() > 4'000'000;
-    rtcSetSceneFlags(scene_, is_large ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT
-                                      : RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(
+        scene_, is_large ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT : RTC_SCENE_FLAG_ROBUST);
     const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     // Copies, since Embree reads 16 bytes at each vertex.
-    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                             RTC_FORMAT_FLOAT3, 12, mesh.vertex_count());
-    void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
-                                              RTC_FORMAT_UINT3, 12, mesh.triangle_count());
+    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                             12, mesh.vertex_count());
+    void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                              12, mesh.triangle_count());
     if (vertices != nullptr && triangles != nullptr) {
       std::memcpy(vertices, mesh.positions.data(), mesh.positions.size() * sizeof(float));
       std::memcpy(triangles, mesh.triangles.data(), mesh.triangles.size() * sizeof(std::uint32_t));
@@ -94,7 +107,8 @@ class Tree : public TriangleTree {
 
   void first(std::span<const Ray> rays, std::span<TriangleHit> hits) const override {
     if (rays.size() == 1) return first_alone(rays.front(), hits.front());
-    // Wide packets pay where there are instructions as wide; a few rays left over go in a narrow one.
+    // Wide packets pay where there are instructions as wide; a few rays left over go in a narrow
+    // one.
     const bool coherent = rays.size() > 32;
     std::size_t begin = 0;
     if (has_wide_)
@@ -110,14 +124,27 @@ class Tree : public TriangleTree {
   }
 
  private:
-  void first_alone(const Ray& ray, TriangleHit& hit) const {
+  void first_alone(Ray ray, TriangleHit& hit) const {
+    // From beyond Embree's reach nothing is met; of a direction only the direction counts.
+    if (!(largest(ray.origin) <= reach)) return;
+    if (const double size = largest(ray.direction); !(size <= reach && size >= 1 / reach)) {
+      const double scale = std::exp2(-std::ilogb(size));
+      ray = {ray.origin, scale * ray.direction, ray.begin / scale, ray.end / scale};
+    }
     Query context(1, false);
     RTCRayHit query;
-    query.ray = {static_cast<float>(ray.origin.x), static_cast<float>(ray.origin.y),
-                 static_cast<float>(ray.origin.z), static_cast<float>(ray.begin),
-                 static_cast<float>(ray.direction.x), static_cast<float>(ray.direction.y),
-                 static_cast<float>(ray.direction.z), 0, static_cast<float>(ray.end),
-                 0xffffffff, 0, 0};
+    query.ray = {static_cast<float>(ray.origin.x),
+                 static_cast<float>(ray.origin.y),
+                 static_cast<float>(ray.origin.z),
+                 static_cast<float>(ray.begin),
+                 static_cast<float>(ray.direction.x),
+                 static_cast<float>(ray.direction.y),
+                 static_cast<float>(ray.direction.z),
+                 0,
+                 static_cast<float>(ray.end),
+                 0xffffffff,
+                 0,
+                 0};
     query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene_, &context.context, &query);
     if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) hit.triangle = query.hit.primID;
@@ -150,14 +177,17 @@ class Tree : public TriangleTree {
       query.hit.geomID[k] = query.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
       query.hit.primID[k] = TriangleHit::no_triangle;
     }
+    if (!is_in_reach(query.ray, Packet::lanes)) {
+      for (std::size_t k = 0; k < rays.size(); ++k) first_alone(rays[k], hits[k]);
+      return;
+    }
     Packet::intersect(valid, scene_, &context.context, &query);
     for (std::size_t k = 0; k < rays.size(); ++k) hits[k].triangle = query.hit.primID[k];
   }
 
   RTCDevice device_;
   RTCScene scene_;
-  bool has_wide_ =
-      rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
+  bool has_wide_ = rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
 };
 
 class Tools : public MeshTools {

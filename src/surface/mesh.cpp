@@ -143,11 +143,10 @@ std::expected<LoadedMesh, std::string> load_mesh(const std::string& file,
   if (!notes) return std::unexpected(file + ": " + notes.error());
   if (options.fit) fit(*mesh);
   const Box box = mesh->bounds();
-  if (const double far = std::max({-box.lower.x, -box.lower.y, -box.lower.z, box.upper.x,
-                                   box.upper.y, box.upper.z});
-      far > farthest)
-    return std::unexpected(file + ": the mesh reaches " + std::to_string(far / 1e18) +
-                           "e18 from the origin, and rays 1e18; make it smaller, or let fit do it");
+  if (std::max({-box.lower.x, -box.lower.y, -box.lower.z, box.upper.x, box.upper.y,
+                box.upper.z}) > farthest)
+    return std::unexpected(file + ": the mesh reaches beyond 1e18 from the origin, where rays do not; make it "
+                           "smaller, or let fit do it");
   if (mesh->normals.empty()) derive_normals(*mesh, options.crease);
   for (std::string& note : *notes) note = file + ": " + note;
   return LoadedMesh{std::move(mesh), std::move(*notes)};

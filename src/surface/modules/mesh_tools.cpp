@@ -2,7 +2,9 @@
 // mesh.cpp, on demand.
 #include <embree3/rtcore.h>
 
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <memory>
 
@@ -53,15 +55,23 @@ void keep_lower_number(const RTCFilterFunctionNArguments* arguments) {
 }
 
 // Embree ends the process where a ray's numbers are greater.
-constexpr float reach = 1.8e18f;
+constexpr double reach = 1.8e18;
 double largest(const Vec3& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
-template <class Rays>
-bool is_in_reach(const Rays& rays, std::size_t lanes) {
-  bool all = true;
-  for (const float* numbers :
-       {rays.org_x, rays.org_y, rays.org_z, rays.dir_x, rays.dir_y, rays.dir_z})
-    for (std::size_t k = 0; k < lanes; ++k) all &= std::fabs(numbers[k]) <= reach;
-  return all;
+
+// Whether all of them certainly are not: their sum is not. Two numbers at a time.
+bool are_in_reach(std::span<const Ray> rays) {
+  using Two [[gnu::vector_size(16)]] = double;
+  using Bits [[gnu::vector_size(16)]] = std::uint64_t;
+  constexpr Bits without_sign = {~std::uint64_t{0} >> 1, ~std::uint64_t{0} >> 1};
+  static_assert(offsetof(Ray, direction) == 3 * sizeof(double));
+  Two sums[3] = {};
+  for (const Ray& ray : rays) {
+    Bits numbers[3];
+    std::memcpy(numbers, &ray, sizeof numbers);
+    for (int k = 0; k < 3; ++k) sums[k] += std::bit_cast<Two>(numbers[k] & without_sign);
+  }
+  const Two sum = sums[0] + sums[1] + sums[2];
+  return sum[0] + sum[1] <= reach;
 }
 
 // Packets of 8 rays and of 16.
@@ -127,7 +137,7 @@ class Tree : public TriangleTree {
   void first_alone(Ray ray, TriangleHit& hit) const {
     // From beyond Embree's reach nothing is met; of a direction only the direction counts.
     if (!(largest(ray.origin) <= reach)) return;
-    if (const double size = largest(ray.direction); !(size <= reach && size >= 1 / reach)) {
+    if (const double size = largest(ray.direction); size > reach) {
       const double scale = std::exp2(-std::ilogb(size));
       ray = {ray.origin, scale * ray.direction, ray.begin / scale, ray.end / scale};
     }
@@ -153,6 +163,10 @@ class Tree : public TriangleTree {
   // Up to a packet.
   template <class Packet>
   void first_of(std::span<const Ray> rays, std::span<TriangleHit> hits, bool coherent) const {
+    if (!are_in_reach(rays)) {
+      for (std::size_t k = 0; k < rays.size(); ++k) first_alone(rays[k], hits[k]);
+      return;
+    }
     Query context(Packet::lanes, coherent);
     alignas(64) int valid[Packet::lanes];
     alignas(64) typename Packet::Rays query;
@@ -176,10 +190,6 @@ class Tree : public TriangleTree {
       query.ray.flags[k] = 0;
       query.hit.geomID[k] = query.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
       query.hit.primID[k] = TriangleHit::no_triangle;
-    }
-    if (!is_in_reach(query.ray, Packet::lanes)) {
-      for (std::size_t k = 0; k < rays.size(); ++k) first_alone(rays[k], hits[k]);
-      return;
     }
     Packet::intersect(valid, scene_, &context.context, &query);
     for (std::size_t k = 0; k < rays.size(); ++k) hits[k].triangle = query.hit.primID[k];

@@ -233,8 +233,8 @@ TEST_F(Surfaces, AnIsosurfaceAroundAllOfItsBoxIsTold) {
 // Images that are nearly of surfaces: what they lack is named.
 TEST_F(Surfaces, WhatAStoredPictureLacksIsTold) {
   file("p.pse", "P = [x y 0]\ncolor = white\n");
-  file("n.pse", "N = [0 0 1]\ncolor = white\n");
-  file("both.pse", "P = [x y 0]\nN = [0 0 1]\ncolor = white\n");
+  file("n.pse", "N = [x y 1]\ncolor = white\n");
+  file("both.pse", "P = [x y 0]\nN = [x y 1]\ncolor = white\n");
   for (const char* name : {"p", "n", "both"})
     ASSERT_EQ(pse({"render", std::string(name) + ".pse", "-o", std::string(name) + ".exr", "--res",
                    "8x8"}).status, 0);

@@ -140,8 +140,8 @@ void bench_bunny(int runs) {
     for (int piece = 0; piece < size * size / 512; ++piece) {
       const int x0 = piece % 16 * 64, y0 = piece / 16 * 8;
       for (int i = 0; i < 512; ++i) {
-        const int block = i / 8, x = x0 + block % 16 * 4 + i % 4,
-                  y = y0 + block / 16 * 2 + i % 8 / 4;
+        const int block = i / 16, x = x0 + block % 16 * 4 + i % 4,
+                  y = y0 + block / 16 * 4 + i % 16 / 4;
         rays[static_cast<std::size_t>(i)] = lens.ray(x + 0.5, y + 0.5);
       }
       scene.trace(rays, hits);

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "surface/shape_words.h"
+
 namespace pse::app {
 namespace {
 
@@ -68,6 +70,11 @@ VolumeOptions bake_options(const Session& session) {
   options.common = render_options(rest);
   if (options.common.outputs.size() > 1)
     throw usage_error("bake writes one file", "name the grids: -o density,color=cloud.vdb");
+  for (const ImageRequest& image : options.common.images)
+    if (image.name.empty() &&
+        (surface::is_shape_name(image.file) || surface::is_field_name(image.file)))
+      throw usage_error(fmt::format("`{}` is no mesh, so it has no texture", image.file),
+                        "bake takes meshes with texture coordinates: .obj .ply .gltf .glb");
   if (!options.common.images.empty())
     throw usage_error(fmt::format("a volume has no pixels for `{}`",
                                   options.common.images.front().file),

@@ -61,6 +61,8 @@ std::string file_identity(const std::string& file) {
 InputImages::InputImages(const RenderOptions& options, const Session& session)
     : tables_(options, session) {
   read_.working = options.write.working;
+  // Before anything is opened: a reader goes on with as many as there are then.
+  image::set_codec_threads(thread_count(options.threads));
   for (const ImageRequest& image : options.images)
     images_.push_back(
         {.name = image.name, .pattern = session.find_file(image.file), .derived = image.derived});

@@ -77,7 +77,6 @@ RenderJob::RenderJob(Session& session, const RenderOptions& options, const Sourc
   count_operations_ = session.arguments.has("stats");
   stats_.compile = program_->times;
   stats_.threads = thread_count(options_.threads);
-  image::set_codec_threads(stats_.threads);
 
   // Several frames need several files.
   for (const PlannedFile& planned : files_)

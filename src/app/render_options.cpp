@@ -10,6 +10,7 @@
 
 #include "image/ocio.h"
 #include "image/sequence.h"
+#include "surface/shape_words.h"
 
 namespace pse::app {
 namespace {
@@ -66,6 +67,18 @@ void sort_words(RenderOptions& options, Arguments& arguments) {
   }
   if (options.program.empty())
     throw usage_error("there is nothing to render", "pse render PROGRAM -o FILE");
+}
+
+// `--on torus minor=0.2` without quotes: the setting is taken for an image.
+void check_settings_are_with_shape(const RenderOptions& options) {
+  const std::string shape = options.on.substr(0, options.on.find(' '));
+  for (const ImageRequest& image : options.images)
+    if (!image.name.empty() && surface::has_setting(shape, image.name) &&
+        !std::filesystem::exists(image.file))
+      throw usage_error(fmt::format("`{0}={1}` is taken for an image, and there is no file {1}",
+                                    image.name, image.file),
+                        fmt::format("a setting of the shape stands with it in quotes: --on \"{} {}={}\"",
+                                    options.on, image.name, image.file));
 }
 
 // --insert and --rule.
@@ -287,6 +300,7 @@ RenderOptions render_options(const Session& session) {
     options.seed = static_cast<std::uint32_t>(parse_integer(*value, 0, 1 << 24));
 
   options.on = arguments.text_or("on", "");
+  if (!options.on.empty()) check_settings_are_with_shape(options);
   options.camera = arguments.text_or("camera", "");
   options.scene = arguments.text_or("scene", "");
   if (std::filesystem::path(options.program).extension() == ".toml") {

@@ -2,6 +2,7 @@
 #include "image/reader.h"
 
 #include <algorithm>
+#include <future>
 #include <numeric>
 
 #include "image/exr_header.h"
@@ -69,17 +70,23 @@ Result<Image> read_image(ImageReader& reader, const ReadLimits& limits,
   try {
     image.planes.resize(chosen.size());
     for (auto& plane : image.planes) plane.reserve(static_cast<std::size_t>(data.pixels()));
+    // The next band's memory is made ready while this one is decoded; nothing moves.
+    const auto make_ready = [&](int end) {
+      for (auto& plane : image.planes)
+        plane.resize(static_cast<std::size_t>(std::int64_t{end - data.y0} * data.width()));
+    };
+    if (data.height() > 0) make_ready(std::min(data.y0 + band, data.y1));
     std::vector<float*> rows(chosen.size());
     for (int y = data.y0; y < data.y1; y += band) {
       const int end = std::min(y + band, data.y1);
-      const auto from = static_cast<std::size_t>(std::int64_t{y - data.y0} * data.width());
-      for (std::size_t c = 0; c < chosen.size(); ++c) {
-        image.planes[c].resize(from +
-                               static_cast<std::size_t>(std::int64_t{end - y} * data.width()));
-        rows[c] = image.planes[c].data() + from;
-      }
-      if (auto done = reader.read_rows(y, end, chosen, rows); !done)
-        return std::unexpected(done.error());
+      for (std::size_t c = 0; c < chosen.size(); ++c)
+        rows[c] = image.planes[c].data() + std::int64_t{y - data.y0} * data.width();
+      std::future<void> ready;
+      if (end < data.y1)
+        ready = std::async(make_ready, std::min(end + band, data.y1));
+      const auto done = reader.read_rows(y, end, chosen, rows);
+      if (ready.valid()) ready.get();
+      if (!done) return std::unexpected(done.error());
     }
   } catch (const std::bad_alloc&) {
     return fail(ErrorKind::too_large, "not enough memory for the image");

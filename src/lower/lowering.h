@@ -80,7 +80,7 @@ class Lowering {
   std::vector<std::string> visible_names() const;
   std::vector<std::string> callable_names() const;
   static std::string foreign_function(const std::string& name);
-  static std::string source_of(const std::string& name);
+  std::string source_of(const std::string& name) const;
   std::string did_you_mean(const std::string& name,
                            const std::vector<std::string>& candidates) const;
 

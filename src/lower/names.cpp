@@ -170,7 +170,20 @@ std::string Lowering::foreign_function(const std::string& name) {
 }
 
 // Which source of samples brings a name that this one lacks.
-std::string Lowering::source_of(const std::string& name) {
+std::string Lowering::source_of(const std::string& name) const {
+  // An image that shows surfaces, or nearly so.
+  const bool has_normal = stream_name("normal") != nullptr;
+  if (has_normal && (name == "view" || name == "direction" || name == "eye"))
+    return "an image of surfaces brings `" + name +
+           "` where its eye is known: --camera eye=X,Y,Z";
+  const auto brings = [&](std::initializer_list<const char*> names) {
+    return std::any_of(names.begin(), names.end(),
+                       [&](const char* one) { return stream_name(one) != nullptr; });
+  };
+  if (!has_normal && brings({"N", "Normal"}))
+    return "an image is one of surfaces where it has a position too: a layer `P` or `Position`";
+  if (name == "normal" && brings({"P", "Position", "place"}))
+    return "an image is one of surfaces where it has a normal too: a layer `N` or `Normal`";
   for (const char* of_surfaces : {"normal", "place", "uv", "id", "depth", "view", "hit", "backface",
                                   "flat_normal", "light_direction", "light_color"})
     if (name == of_surfaces)

@@ -101,7 +101,9 @@ std::string what_is_wrong(const Mesh& mesh, int tile) {
   if (tile != 0 && !tiles.contains(tile))
     return "the mesh has nothing in tile " + std::to_string(tile) + "; it has " + list;
   if (tile == 0 && several)
-    return "the mesh's texture coordinates fill several tiles (" + list +
+    return (tiles.contains(1001) || list.find(',') != std::string::npos
+                ? "the mesh's texture coordinates fill several tiles ("
+                : "the mesh's texture coordinates lie in another tile than 1001 (") + list +
            "); bake each with --udim and its number";
   return "";
 }

@@ -28,8 +28,12 @@ std::expected<std::vector<std::string>, std::string> clean_mesh(Mesh& mesh) {
   std::vector<std::string> notes;
   if (mesh.normals.size() != 3 * vertices) mesh.normals.clear();
   if (mesh.uvs.size() != 2 * vertices) mesh.uvs.clear();
+  std::size_t no_uv = 0;
   for (float& value : mesh.uvs)
-    if (!std::isfinite(value)) value = 0;
+    if (!std::isfinite(value)) value = 0, ++no_uv;
+  if (no_uv > 0)
+    notes.push_back(counted(no_uv, "texture coordinate is", "texture coordinates are") +
+                    " not a number; taken for 0");
   for (float& value : mesh.normals)
     if (!std::isfinite(value)) {
       notes.emplace_back("its normals are not all numbers, so new ones were made");

@@ -48,12 +48,17 @@ class Isosurface : public Shape {
       : field_(std::move(field)), level_(level), box_(box), step_(step) {}
   Box bounds() const override { return box_; }
 
-  // Asks at the corners of the box, then, where all of them are inside, at a lattice in it.
+  // Asks at the corners of the box, then, where all of them are on one side, at a lattice in it.
   std::string why_unseen() const override {
-    if (!is_inside_at_lattice(1) || !is_inside_at_lattice(lattice)) return "";
     std::ostringstream text;
-    text << "its function is above `level` " << level_
-         << " everywhere within `bounds`, so that no surface is there";
+    if (is_all_at_lattice(1, true) && is_all_at_lattice(lattice, true))
+      text << "its function is above `level` " << level_
+           << " everywhere within `bounds`, so that no surface is there";
+    else if (is_all_at_lattice(1, false) && is_all_at_lattice(lattice, false) &&
+             is_all_at_lattice(fine_lattice, false))
+      text << "its function is nowhere above `level` " << level_
+           << " within `bounds`, as far as a lattice of " << fine_lattice
+           << " cells a side tells, so that no surface is there";
     return text.str();
   }
 
@@ -90,19 +95,23 @@ class Isosurface : public Shape {
   }
 
  private:
-  static constexpr int lattice = 32;  // cells along each side of the box
+  // Cells along each side of the box. Small things are missed by the first.
+  static constexpr int lattice = 32, fine_lattice = 128;
 
-  bool is_inside_at_lattice(int cells) const {
+  // Whether all points are inside, or none is.
+  bool is_all_at_lattice(int cells, bool inside) const {
     Points points;
     const Vec3 size = box_.upper - box_.lower;
     const auto part = [&](int i) { return double(i) / cells; };
-    for (int k = 0; k <= cells; ++k)
+    for (int k = 0; k <= cells; ++k) {
+      points.clear();
       for (int j = 0; j <= cells; ++j)
         for (int i = 0; i <= cells; ++i)
           points.add(box_.lower + Vec3{part(i) * size.x, part(j) * size.y, part(k) * size.z});
-    points.ask(field_);
-    for (std::size_t i = 0; i < points.size(); ++i)
-      if (!(points[i] > level_)) return false;
+      points.ask(field_);
+      for (std::size_t i = 0; i < points.size(); ++i)
+        if ((points[i] > level_) != inside) return false;
+    }
     return true;
   }
 

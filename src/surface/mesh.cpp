@@ -6,6 +6,7 @@
 
 #include "image/module_loader.h"
 #include "surface/mesh_file.h"
+#include "surface/ply_mesh.h"
 
 namespace pse::surface {
 namespace {
@@ -28,6 +29,9 @@ void fit(Mesh& mesh) {
     mesh.positions[i] =
         static_cast<float>((mesh.positions[i] - centre[static_cast<int>(i % 3)]) * scale);
 }
+
+// What Embree can reach.
+constexpr double farthest = 1e18;
 
 class MeshShape : public Shape {
  public:
@@ -104,24 +108,50 @@ Box Mesh::bounds() const {
   return box;
 }
 
-std::expected<LoadedMesh, std::string> load_mesh(const std::string& file,
-                                                 const MeshOptions& options) {
-  if (const std::string problem = look_at_mesh_file(file, options.most_triangles);
-      !problem.empty())
-    return std::unexpected(file + ": " + problem);
+namespace {
+
+// The file's triangles as they stand there; the error is a sentence without the file's name.
+std::expected<Mesh, std::string> read_mesh(const std::string& file, const MeshOptions& options) {
+  if (const std::string problem = look_at_mesh_file(file); !problem.empty())
+    return std::unexpected(problem);
+  Mesh mesh;
+  if (mesh_kind(file) == MeshKind::ply) {
+    const auto done = read_binary_ply(file, options.most_triangles, mesh);
+    if (!done) return std::unexpected(done.error());
+    if (*done) return mesh;
+  }
+  const std::size_t most = std::min(options.most_triangles, options.most_library_triangles);
+  if (const std::string problem = too_much_for_library(file, most); !problem.empty())
+    return std::unexpected(problem);
   const auto tools = mesh_tools();
   if (!tools) return std::unexpected(tools.error());
-  auto mesh = std::make_shared<Mesh>();
   std::string error;
-  if (!(*tools)->read(file, *mesh, error)) return std::unexpected(file + ": " + error);
+  if (!(*tools)->read(file, mesh, error)) return std::unexpected(error);
+  if (mesh.triangle_count() > most)
+    return std::unexpected(too_many_triangles(mesh.triangle_count(), most));
+  return mesh;
+}
+
+}  // namespace
+
+std::expected<LoadedMesh, std::string> load_mesh(const std::string& file,
+                                                 const MeshOptions& options) try {
+  auto read = read_mesh(file, options);
+  if (!read) return std::unexpected(file + ": " + read.error());
+  auto mesh = std::make_shared<Mesh>(std::move(*read));
   auto notes = clean_mesh(*mesh);
   if (!notes) return std::unexpected(file + ": " + notes.error());
-  if (mesh->triangle_count() > options.most_triangles)
-    return std::unexpected(file + ": " + too_many_triangles(mesh->triangle_count(), options.most_triangles));
   if (options.fit) fit(*mesh);
+  const Box box = mesh->bounds();
+  if (std::max({-box.lower.x, -box.lower.y, -box.lower.z, box.upper.x, box.upper.y,
+                box.upper.z}) > farthest)
+    return std::unexpected(file + ": the mesh reaches beyond 1e18 from the origin, where rays do not; make it "
+                           "smaller, or let fit do it");
   if (mesh->normals.empty()) derive_normals(*mesh, options.crease);
   for (std::string& note : *notes) note = file + ": " + note;
   return LoadedMesh{std::move(mesh), std::move(*notes)};
+} catch (const std::bad_alloc&) {
+  return std::unexpected(file + ": there is not enough memory for the mesh");
 }
 
 std::expected<std::shared_ptr<const Shape>, std::string> make_mesh_shape(

@@ -29,7 +29,8 @@ struct Mesh {
 struct MeshOptions {
   bool fit = false;      // moved and scaled so that it is centred and its longest side is 2
   double crease = 60;    // degrees; where a mesh has no normals, edges sharper than this stay sharp
-  std::size_t most_triangles = 4'000'000;
+  std::size_t most_triangles = 32'000'000;         // of binary PLY
+  std::size_t most_library_triangles = 4'000'000;  // of all others, which Assimp reads
 };
 
 struct LoadedMesh {
@@ -59,8 +60,8 @@ class TriangleTree {
  public:
   virtual ~TriangleTree() = default;
   // The triangle that each ray meets first, as far as single precision tells; of several at the same
-  // distance, the one with the least number. It depends on the ray alone. Fastest where eight rays
-  // in a row lie side by side.
+  // distance, the one with the least number. It depends on the ray alone. Fastest where each 16
+  // rays in a row lie side by side, and 8 of them too.
   virtual void first(std::span<const Ray> rays, std::span<TriangleHit> hits) const = 0;
 };
 class MeshTools {

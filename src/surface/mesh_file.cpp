@@ -44,6 +44,13 @@ std::size_t faces_of_ply(std::ifstream& stream) {
   return 0;
 }
 
+std::string ending_of(const std::string& file) {
+  std::string ending = fs::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
 }  // namespace
 
 std::string too_many_triangles(std::size_t count, std::size_t most) {
@@ -51,24 +58,34 @@ std::string too_many_triangles(std::size_t count, std::size_t most) {
          " are taken; make a coarser copy of it first";
 }
 
-std::string look_at_mesh_file(const std::string& file, std::size_t most_triangles) {
+MeshKind mesh_kind(const std::string& file) {
+  const std::string ending = ending_of(file);
+  if (ending == ".ply") return MeshKind::ply;
+  if (ending == ".obj") return MeshKind::obj;
+  return ending == ".gltf" || ending == ".glb" ? MeshKind::gltf : MeshKind::none;
+}
+
+std::string look_at_mesh_file(const std::string& file) {
   std::error_code error;
   if (!fs::exists(file, error)) return "there is no such file";
   if (!fs::is_regular_file(file, error)) return "this is not a file";
-  std::string ending = fs::path(file).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (ending != ".obj" && ending != ".ply" && ending != ".gltf" && ending != ".glb")
-    return "meshes are .obj, .ply, .gltf or .glb files";
-  const std::uintmax_t size = fs::file_size(file, error);
-  if (error || size == 0) return "the file is empty";
-  if (size > most_bytes) return "the file is larger than 1 GiB; make a coarser copy of it first";
+  if (mesh_kind(file) == MeshKind::none) return "meshes are .obj, .ply, .gltf or .glb files";
+  if (fs::file_size(file, error) == 0 || error) return "the file is empty";
+  if (!std::ifstream(file, std::ios::binary)) return "the file cannot be opened";
+  return "";
+}
+
+std::string too_much_for_library(const std::string& file, std::size_t most_triangles) {
+  constexpr const char* instead = ", or save it as binary PLY with faces of three or four corners";
+  std::error_code error;
+  if (fs::file_size(file, error) > most_bytes)
+    return std::string("the file is larger than 1 GiB; make a coarser copy of it first") + instead;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) return "the file cannot be opened";
-  const std::size_t faces = ending == ".obj"   ? faces_of_obj(stream)
-                            : ending == ".ply" ? faces_of_ply(stream)
-                                               : 0;
-  return faces > most_triangles ? too_many_triangles(faces, most_triangles) : "";
+  const MeshKind kind = mesh_kind(file);
+  const std::size_t faces = kind == MeshKind::obj   ? faces_of_obj(stream)
+                            : kind == MeshKind::ply ? faces_of_ply(stream)
+                                                    : 0;
+  return faces > most_triangles ? too_many_triangles(faces, most_triangles) + instead : "";
 }
 
 }  // namespace pse::surface

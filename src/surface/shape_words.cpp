@@ -1,8 +1,11 @@
 // One table of shapes: name, settings with their usual values, and how each is made.
 #include "surface/shape_words.h"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cstdlib>
+#include <cstring>
 #include <functional>
 #include <sstream>
 
@@ -26,6 +29,7 @@ struct Kind {
   std::function<std::shared_ptr<const Shape>(const Values&)> make;
 };
 
+constexpr int most_steps = 20'000;  // half through an isosurface's box
 constexpr double tiny = 1e-6, inf = std::numeric_limits<double>::infinity();
 
 double one(const Values& v, const char* name) { return v.at(name).front(); }
@@ -43,13 +47,17 @@ std::vector<ProfilePoint> profile_of(const std::vector<double>& numbers) {
 
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all = {
-      {"sphere", {{"radius", {1}, tiny}},
+      {"sphere",
+       {{"radius", {1}, tiny}},
        [](const Values& v) { return make_sphere(one(v, "radius")); }},
-      {"torus", {{"major", {0.7}, tiny}, {"minor", {0.3}, tiny}},
+      {"torus",
+       {{"major", {0.7}, tiny}, {"minor", {0.3}, tiny}},
        [](const Values& v) { return make_torus(one(v, "major"), one(v, "minor")); }},
-      {"box", {{"size", {1.4, 1.4, 1.4}, tiny}},
+      {"box",
+       {{"size", {1.4, 1.4, 1.4}, tiny}},
        [](const Values& v) { return make_box(three(v, "size")); }},
-      {"plane", {{"size", {inf}, tiny}},
+      {"plane",
+       {{"size", {inf}, tiny}},
        [](const Values& v) { return make_plane(one(v, "size")); }},
       {"superquadric",
        {{"size", {1, 1, 1}, tiny}, {"north", {0.5}, 0.05, 4}, {"east", {0.5}, 0.05, 4}},
@@ -71,12 +79,21 @@ const Kind* find_kind(const std::string& name) {
   return nullptr;
 }
 
+constexpr const char* settings_come_behind = "settings come behind the name, in quotes: ";
+
 bool is_mesh_name(const std::string& name) { return name.find('.') != std::string::npos; }
 
 const Kind& field_kind() {
   static const Kind kind = {
-      "an isosurface", {{"level", {0.5}, -inf}, {"bounds", {1.5, 1.5, 1.5}, tiny}, {"step", {0}, 0}}, {}};
+      "an isosurface",
+      {{"level", {0.5}, -inf}, {"bounds", {1.5, 1.5, 1.5}, tiny}, {"step", {0}, 0}},
+      {}};
   return kind;
+}
+
+bool has(const Kind& kind, const std::string& key) {
+  return std::any_of(kind.parameters.begin(), kind.parameters.end(),
+                     [&](const Parameter& parameter) { return key == parameter.name; });
 }
 
 std::string text_of(double number) {
@@ -96,9 +113,9 @@ ShapeError unknown_setting(const Setting& setting, const std::string& shape,
   for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
   const std::string near = nearest_name(setting.key, known);
   return {shape + " has no setting `" + setting.key + "`",
-          !near.empty()   ? "did you mean `" + near + "`?"
-          : list.empty()  ? "it has none"
-                          : "it has " + list,
+          !near.empty()  ? "did you mean `" + near + "`?"
+          : list.empty() ? "it has none"
+                         : "it has " + list,
           setting.line, true};
 }
 
@@ -112,25 +129,23 @@ std::expected<Values, ShapeError> values_of(const Kind& kind, const ShapeSpec& s
     const Parameter* parameter = nullptr;
     for (const Parameter& candidate : kind.parameters)
       if (setting.key == candidate.name) parameter = &candidate;
-    if (parameter == nullptr)
-      return std::unexpected(unknown_setting(setting, kind.name, known));
+    if (parameter == nullptr) return std::unexpected(unknown_setting(setting, kind.name, known));
     const std::size_t given = setting.numbers.size(), usual = parameter->usual.size();
     const bool fits = parameter->any_length ? given >= 4 && given % 2 == 0
                                             : given == usual || (given == 1 && usual == 3);
     if (!fits)
-      return std::unexpected(
-          ShapeError{"`" + setting.key + "` of " + kind.name +
-                         (parameter->any_length
-                              ? " takes pairs of radius and height, two or more"
-                              : " takes " + std::to_string(usual) +
-                                    (usual == 1 ? " number" : " numbers")),
-                     "", setting.line, true});
+      return std::unexpected(ShapeError{
+          "`" + setting.key + "` of " + kind.name +
+              (parameter->any_length
+                   ? " takes pairs of radius and height, two or more"
+                   : " takes " + std::to_string(usual) + (usual == 1 ? " number" : " numbers")),
+          "", setting.line, true});
     for (const double number : setting.numbers)
       if (!(number >= parameter->least && number <= parameter->most))
-        return std::unexpected(ShapeError{
-            "`" + setting.key + "` of " + kind.name + " is " + text_of(number) + ", and goes " +
-                range_of(*parameter),
-            "", setting.line, true});
+        return std::unexpected(ShapeError{"`" + setting.key + "` of " + kind.name + " is " +
+                                              text_of(number) + ", and goes " +
+                                              range_of(*parameter),
+                                          "", setting.line, true});
     values[setting.key] = setting.numbers;
   }
   return values;
@@ -151,13 +166,47 @@ std::expected<MadeShape, ShapeError> make_mesh(const ShapeSpec& spec, bool fit) 
       return std::unexpected(unknown_setting(setting, "a mesh", {"fit", "crease"}));
   }
   const auto loaded = load_mesh(spec.shape, options);
-  if (!loaded) return std::unexpected(ShapeError{loaded.error(), "", spec.line, false});
+  if (!loaded) {
+    const std::string quoted = quoted_settings(spec.shape);
+    return std::unexpected(
+        ShapeError{loaded.error(), quoted.empty() ? "" : settings_come_behind + quoted, spec.line,
+                   false});
+  }
   const auto shape = make_mesh_shape(loaded->mesh);
   if (!shape) return std::unexpected(ShapeError{shape.error(), "", spec.line, false});
   return MadeShape{*shape, loaded->notes};
 }
 
 }  // namespace
+
+std::string quoted_settings(const std::string& words) {
+  const std::size_t end = words.find_first_of(" :;,(=?&");
+  const std::string name = words.substr(0, end);
+  if (end == std::string::npos || (!is_shape_name(name) && !is_mesh_name(name))) return "";
+  std::string settings = words.substr(end + 1);
+  const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    const char c = settings[i];
+    const bool ends_list = c == ',' && (i + 1 == settings.size() || is_letter(settings[i + 1]));
+    if (ends_list || (std::strchr("=.,+-_", c) == nullptr && !is_letter(c) && (c < '0' || c > '9')))
+      settings[i] = ' ';
+  }
+  while (settings.ends_with(' ')) settings.pop_back();
+  if (settings.find('=') == std::string::npos) {
+    const Kind* kind = find_kind(name);
+    settings = kind != nullptr && !kind->parameters.empty()
+                   ? std::string(kind->parameters.front().name) + "=" +
+                         text_of(kind->parameters.front().usual.front())
+                   : "fit=false";
+  }
+  return "\"" + name + " " + settings + "\"";
+}
+
+bool has_setting(const std::string& shape, const std::string& key) {
+  if (const Kind* kind = find_kind(shape)) return has(*kind, key);
+  if (is_field_name(shape)) return has(field_kind(), key);
+  return key == "fit" || key == "crease";
+}
 
 std::expected<ShapeSpec, ShapeError> parse_shape(const std::string& words) {
   std::istringstream stream(words);
@@ -187,8 +236,12 @@ std::expected<ShapeSpec, ShapeError> parse_shape(const std::string& words) {
       at = *end == ',' ? end + 1 : end;
     }
     if (setting.numbers.empty())
-      return std::unexpected(ShapeError{"`" + word + "` is no setting of a shape",
-                                        "for example: torus minor=0.3", 0, true});
+      return std::unexpected(ShapeError{
+          "`" + word + "` is no setting of a shape",
+          std::count(word.begin(), word.end(), '=') > 1
+              ? settings_come_behind + quoted_settings(spec.shape + " " + word)
+              : "for example: torus minor=0.3",
+          0, true});
     spec.settings.push_back(std::move(setting));
   }
   return spec;
@@ -217,6 +270,11 @@ std::expected<MadeShape, ShapeError> make_field_shape(const ShapeSpec& spec, Fie
   if (!values) return std::unexpected(values.error());
   const Vec3 half = three(*values, "bounds");
   const double step = one(*values, "step");
+  if (step > 0 && step < length(half) / most_steps)
+    return std::unexpected(ShapeError{
+        "`step` of an isosurface is " + text_of(step) + ", less than a " +
+            std::to_string(most_steps) + "th of its box: rays would be on their way for ever",
+        "at least " + text_of(length(half) / most_steps), spec.line, true});
   return MadeShape{make_isosurface(std::move(field), one(*values, "level"), {-half, half},
                                    step > 0 ? step : length(half) / 100),
                    {}};
@@ -230,11 +288,13 @@ std::expected<MadeShape, ShapeError> make_shape(const ShapeSpec& spec, bool fit_
     std::string list;
     for (const Kind& known : kinds())
       names.emplace_back(known.name), list += std::string(known.name) + ", ";
-    const std::string near = nearest_name(spec.shape, names);
-    return std::unexpected(ShapeError{"there is no shape `" + spec.shape + "`",
-                                      near.empty() ? "shapes are " + list + "and meshes: .obj .ply .gltf .glb"
-                                                   : "did you mean `" + near + "`?",
-                                      spec.line, true});
+    const std::string near = nearest_name(spec.shape, names), quoted = quoted_settings(spec.shape);
+    const std::string hint = !quoted.empty() ? settings_come_behind + quoted
+                             : near.empty()
+                                 ? "shapes are " + list + "and meshes: .obj .ply .gltf .glb"
+                                 : "did you mean `" + near + "`?";
+    return std::unexpected(
+        ShapeError{"there is no shape `" + spec.shape + "`", hint, spec.line, true});
   }
   const auto values = values_of(*kind, spec);
   if (!values) return std::unexpected(values.error());

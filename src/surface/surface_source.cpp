@@ -223,9 +223,9 @@ SurfaceSource::SurfaceSource(const ir::Module& module, std::shared_ptr<const Sce
 
 namespace {
 
-// The order in which rays are sent: where samples are rows of a picture, in blocks of 4 by 2 pixels,
-// so that eight rays in a row lie side by side. (What a sample shows does not depend on it.) The
-// last one made is kept, since most tiles have the same.
+// The order in which rays are sent: where samples are rows of a picture, in blocks of 4 by 4 pixels,
+// so that eight or sixteen rays in a row lie side by side. (What a sample shows does not depend on
+// it.) The last one made is kept, since most tiles have the same.
 class Order {
  public:
   std::span<const std::uint32_t> of(std::span<const double> y) {
@@ -245,9 +245,9 @@ class Order {
       for (std::size_t i = 0; i < count; ++i) add(i);
       return;
     }
-    for (std::size_t top = 0; top < rows; top += 2)
+    for (std::size_t top = 0; top < rows; top += 4)
       for (std::size_t left = 0; left < row; left += 4)
-        for (std::size_t down = top; down < std::min(top + 2, rows); ++down)
+        for (std::size_t down = top; down < std::min(top + 4, rows); ++down)
           for (std::size_t across = left; across < std::min(left + 4, row); ++across)
             add(down * row + across);
   }

@@ -111,6 +111,8 @@ TEST_F(BakeAtlas, TilesAndOverlaps) {
   ended = bake("two.obj fit=false", {"--udim", "1011"});
   EXPECT_EQ(ended.status, 4);
   EXPECT_TRUE(contains(ended.err, "nothing in tile 1011"));
+  file("other.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nvt 1 0\nvt 2 0\nvt 2 1\nf 1/1 2/2 3/3\n");
+  EXPECT_TRUE(contains(bake("other.obj").err, "lie in another tile than 1001 (1002)"));
   // Both in the same place: a warning.
   file("same.obj", corners + faces + "f 5/1 6/2 7/3\nf 5/1 7/3 8/4\n");
   ended = bake("same.obj fit=false");
@@ -120,6 +122,9 @@ TEST_F(BakeAtlas, TilesAndOverlaps) {
 
 TEST_F(BakeAtlas, WhatIsWrongIsSaid) {
   file("a.pse", "color = white * point.x\n");
+  const Ended no_mesh = bake("sphere");
+  EXPECT_EQ(no_mesh.status, 2);
+  EXPECT_TRUE(contains(no_mesh.err, "`sphere` is no mesh")) << no_mesh.err;
   file("bare.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const Ended ended = bake("bare.obj");
   EXPECT_EQ(ended.status, 4);

@@ -227,6 +227,46 @@ TEST_F(Surfaces, AnIsosurfaceAroundAllOfItsBoxIsTold) {
   };
   EXPECT_TRUE(contains(told("blob.pse"), "is above `level` 0.5 everywhere"));
   EXPECT_EQ(told("blob.pse level=2").find("nothing is seen"), std::string::npos);
+  EXPECT_TRUE(contains(told("blob.pse level=5"), "is nowhere above `level` 5"));
+}
+
+// Images that are nearly of surfaces: what they lack is named.
+TEST_F(Surfaces, WhatAStoredPictureLacksIsTold) {
+  file("p.pse", "P = [x y 0]\ncolor = white\n");
+  file("n.pse", "N = [x y 1]\ncolor = white\n");
+  file("both.pse", "P = [x y 0]\nN = [x y 1]\ncolor = white\n");
+  for (const char* name : {"p", "n", "both"})
+    ASSERT_EQ(pse({"render", std::string(name) + ".pse", "-o", std::string(name) + ".exr", "--res",
+                   "8x8"}).status, 0);
+  file("shade.pse", "color = 0.5 + 0.5 * normal\n");
+  EXPECT_TRUE(contains(pse({"render", "shade.pse", "p.exr", "-o", "o.exr"}).err,
+                       "has a normal too: a layer `N`"));
+  EXPECT_TRUE(contains(pse({"render", "shade.pse", "n.exr", "-o", "o.exr"}).err,
+                       "has a position too: a layer `P`"));
+  file("seen.pse", "color = white * dot(normal, view)\n");
+  EXPECT_TRUE(contains(pse({"render", "seen.pse", "both.exr", "-o", "o.exr"}).err,
+                       "--camera eye=X,Y,Z"));
+}
+
+// An eye so far away that Embree would end the process.
+TEST_F(Surfaces, AMeshIsNotSeenFromBeyondTheReachOfRays) {
+  file("p.pse", "color = white\n");
+  file("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_EQ(pse({"render", "p.pse", "--on", "t.obj", "--camera", "eye=1e20,0,0", "--res", "9x9", "-o",
+                 "o.exr"}).status, 0);
+}
+
+// Settings that a shape's name runs into, and those that are taken for images.
+TEST_F(Surfaces, SettingsInAnotherSpellingAreToldHowTheyAreWritten) {
+  file("p.pse", "color = white\n");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"superquadric:north=2"}, {"superquadric", "north=2"}}) {
+    std::vector<std::string> arguments = {"render", "p.pse", "-o", "o.exr", "--on"};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    const Ended ended = pse(arguments);
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_TRUE(contains(ended.err, "\"superquadric north=2\"")) << ended.err;
+  }
 }
 
 TEST_F(Surfaces, ACameraInsideAnObjectIsTold) {

@@ -155,6 +155,14 @@ TEST_F(MeshFiles, FaultyFacesAreLeftOutAndCounted) {
   EXPECT_SAYS(error_of("n.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), "no face");
 }
 
+TEST_F(MeshFiles, OneBeyondTheReachOfRaysIsRefusedUnlessFitted) {
+  const std::string huge = "v 1e30 0 0\nv 1e30 1e30 0\nv 0 1e30 0\nf 1 2 3\n";
+  EXPECT_SAYS(error_of("huge.obj", huge), "beyond 1e18");
+  const auto fitted = load_mesh(write("huge.obj", huge), {.fit = true});
+  ASSERT_TRUE(fitted) << fitted.error();
+  EXPECT_NEAR(fitted->mesh->bounds().upper.x, 1, 1e-6);
+}
+
 TEST_F(MeshFiles, TooManyFacesAreRefusedByTheirCount) {
   MeshOptions options;
   options.most_triangles = 5;
@@ -167,6 +175,14 @@ TEST_F(MeshFiles, TooManyFacesAreRefusedByTheirCount) {
                                             "element face 10000000\nend_header\n"));
   ASSERT_FALSE(ply);
   EXPECT_SAYS(ply.error(), "10000000 faces");
+}
+
+TEST(CleanMesh, CoordinatesThatAreNoNumbersAreTold) {
+  Mesh mesh{{0, 0, 0, 1, 0, 0, 0, 1, 0}, {}, {std::nanf(""), 0, 1, 0, 0, 1}, {0, 1, 2}};
+  const auto notes = clean_mesh(mesh);
+  ASSERT_TRUE(notes && notes->size() == 1);
+  EXPECT_SAYS((*notes)[0], "1 texture coordinate is not a number");
+  EXPECT_EQ(mesh.uvs[0], 0);
 }
 
 TEST(CleanMesh, IndicesBeyondTheVerticesAreLeftOut) {

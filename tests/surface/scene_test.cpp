@@ -1,6 +1,8 @@
 // Scenes of many objects, and that a hit depends on its ray alone.
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "rays.h"
 #include "surface/mesh.h"
 #include "surface/scene.h"
@@ -137,6 +139,18 @@ void expect_alone_as_together(const Scene& scene, const std::vector<Ray>& rays) 
     expect_same(together[i]);
     if (i > 0) expect_same(back[rays.size() - 1 - i]);
   }
+  // In companies of 1 to 40: packets that are full, that are not, and of more than one width.
+  std::vector<Hit> parted(rays.size());
+  for (std::size_t begin = 0, count = 1; begin < rays.size();
+       begin += count, count = count % 40 + 1) {
+    count = std::min(count, rays.size() - begin);
+    scene.trace(std::span(rays).subspan(begin, count), std::span(parted).subspan(begin, count));
+    for (std::size_t i = begin; i < begin + count; ++i) {
+      ASSERT_EQ(parted[i].object, together[i].object) << i << " of " << count;
+      ASSERT_EQ(parted[i].meeting.part, together[i].meeting.part) << i << " of " << count;
+      ASSERT_EQ(parted[i].t(), together[i].t()) << i << " of " << count;
+    }
+  }
 }
 
 TEST(Scenes, AHitOfShapesDependsOnItsRayAlone) {
@@ -168,6 +182,73 @@ TEST(Scenes, AHitOfAMeshDependsOnItsRayAlone) {
     for (int x = 0; x < 64; ++x)
       rays.push_back({{-1 + x / 32.0, -1 + y / 32.0, 2}, {0, 0, -1}});
   expect_alone_as_together(Scene({{"sheets", *shape, {}, 0}}, {}), rays);
+}
+
+// Numbers that Embree does not take: from so far away nothing is met, alone and in company; a
+// direction may be as long as it likes.
+TEST(Scenes, RaysFromFarAwayAndLongOnesAtAMesh) {
+  if (!PSE_HAS_MESHES) GTEST_SKIP() << "built without meshes";
+  auto mesh = std::make_shared<Mesh>();
+  mesh->positions = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+  mesh->triangles = {0, 1, 2};
+  const auto shape = make_mesh_shape(mesh);
+  ASSERT_TRUE(shape) << shape.error();
+  const Scene scene({{"face", *shape, {}, 0}}, {});
+  std::vector<Ray> rays;
+  for (const double far : {1e17, 1e19, 1e30, 1e200}) rays.push_back({{0, 0, far}, {0, 0, -1}});
+  for (const double length : {1e-15, 1e-6, 1.0, 1e19, 1e60})
+    rays.push_back({{0, 0, 2}, {0, 0, -length}});
+  for (int i = 0; i < 9; ++i) rays.push_back({{0, 0, 3}, {0, 0, -1}});
+  std::vector<Hit> hits(rays.size());
+  scene.trace(rays, hits);
+  for (std::size_t i = 1; i < 4; ++i) EXPECT_FALSE(hits[i].found()) << i;
+  for (std::size_t i = 4; i < 9; ++i) {
+    ASSERT_TRUE(hits[i].found()) << i;
+    EXPECT_NEAR(hits[i].t() * length(rays[i].direction), 2, 1e-9) << i;
+  }
+  for (std::size_t i = 9; i < rays.size(); ++i) EXPECT_NEAR(hits[i].t(), 3, 1e-12) << i;
+  expect_alone_as_together(scene, rays);
+}
+
+// All triangles of a ball that is there twice: of each pair, the one with the lower number is met,
+// by rays alone and in packets of either width.
+TEST(Scenes, OfTwoEqualTrianglesTheFirstIsMet) {
+  if (!PSE_HAS_MESHES) GTEST_SKIP() << "built without meshes";
+  constexpr int rings = 24, sides = 48;
+  auto mesh = std::make_shared<Mesh>();
+  for (int i = 0; i <= rings; ++i)
+    for (int k = 0; k < sides; ++k) {
+      const double a = std::numbers::pi * i / rings, b = 2 * std::numbers::pi * k / sides;
+      for (const double c : {std::sin(a) * std::cos(b), std::cos(a), std::sin(a) * std::sin(b)})
+        mesh->positions.push_back(static_cast<float>(c));
+    }
+  for (int copy = 0; copy < 2; ++copy)
+    for (int i = 0; i < rings; ++i)
+      for (int k = 0; k < sides; ++k) {
+        const int next = (k + 1) % sides;
+        for (const int corner : {i * sides + k, i * sides + next, (i + 1) * sides + k})
+          mesh->triangles.push_back(static_cast<std::uint32_t>(corner));
+        for (const int corner : {i * sides + next, (i + 1) * sides + next, (i + 1) * sides + k})
+          mesh->triangles.push_back(static_cast<std::uint32_t>(corner));
+      }
+  const auto shape = make_mesh_shape(mesh);
+  ASSERT_TRUE(shape) << shape.error();
+  const Scene scene({{"ball", *shape, {}, 0}}, {});
+  const std::vector<Ray> rays = rays_inward(3000, 3);
+  std::vector<Hit> hits(rays.size());
+  for (const std::size_t company : {1, 5, 8, 12, 16, 48}) {
+    std::size_t found = 0;
+    for (std::size_t begin = 0; begin < rays.size(); begin += company) {
+      const std::size_t count = std::min(company, rays.size() - begin);
+      scene.trace(std::span(rays).subspan(begin, count), std::span(hits).subspan(begin, count));
+    }
+    for (const Hit& hit : hits) {
+      if (!hit.found()) continue;
+      ++found;
+      EXPECT_LT(hit.meeting.part, mesh->triangle_count() / 2) << "in companies of " << company;
+    }
+    EXPECT_GT(found, 500u);
+  }
 }
 
 // Those of many places at once are those of each.

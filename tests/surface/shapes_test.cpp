@@ -207,7 +207,39 @@ TEST(Shapes, AnIsosurfaceAroundAllOfItsBoxSaysThatItIsUnseen) {
       values[i] = std::hypot(x[i] - 0.2f, y[i], z[i]) - 0.3f;
   };
   EXPECT_EQ(why(hollow, 0, 0.9), "");
+  // Above what it reaches, and a bead between the places of a coarse lattice.
+  EXPECT_NE(why(ball, 1.7, 2).find("nowhere above `level` 1.7"), std::string::npos);
+  const Field bead = [](std::int64_t count, const float* x, const float* y, const float* z,
+                        float* values) {
+    for (std::int64_t i = 0; i < count; ++i)
+      values[i] = 0.014f - std::hypot(x[i] - 0.015625f, y[i] - 0.015625f, z[i] - 0.015625f);
+  };
+  EXPECT_EQ(why(bead, 0, 1), "");
   EXPECT_EQ(make_sphere(1)->why_unseen(), "");
+}
+
+TEST(Shapes, SettingsInAnotherSpellingAreWrittenAsTheyShouldBe) {
+  EXPECT_EQ(quoted_settings("superquadric:north=2"), "\"superquadric north=2\"");
+  EXPECT_EQ(quoted_settings("superquadric(north=2,east=1)"), "\"superquadric north=2 east=1\"");
+  EXPECT_EQ(quoted_settings("torus major=1:minor=0.2"), "\"torus major=1 minor=0.2\"");
+  EXPECT_EQ(quoted_settings("sphere(2)"), "\"sphere radius=1\"");
+  EXPECT_EQ(quoted_settings("blob.pse:level=2"), "\"blob.pse level=2\"");
+  EXPECT_EQ(quoted_settings("sphere"), "");
+  EXPECT_EQ(quoted_settings("ball:radius=2"), "");
+  EXPECT_TRUE(has_setting("superquadric", "north"));
+  EXPECT_TRUE(has_setting("bunny.obj", "fit"));
+  EXPECT_FALSE(has_setting("sphere", "north"));
+}
+
+TEST(Shapes, AStepThatTakesForEverIsRefused) {
+  const auto made = [](const std::string& words) {
+    const auto shape = make_field_shape(
+        *parse_shape(words), [](std::int64_t, const float*, const float*, const float*, float*) {});
+    return shape ? "" : shape.error().message;
+  };
+  EXPECT_EQ(made("blob.pse step=0.001"), "");
+  EXPECT_NE(made("blob.pse step=1e-9").find("for ever"), std::string::npos);
+  EXPECT_NE(made("blob.pse step=0.001 bounds=1e6").find("for ever"), std::string::npos);
 }
 
 // Settings beyond their range are refused and say it; at its ends they are taken.

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "antialias/stored.h"
+#include "stream/blocks.h"
 #include "stream/planes.h"
 #include "stream/tiling.h"
 
@@ -89,14 +90,14 @@ class Execution {
     });
     plan.compute = [&](std::int64_t number, std::span<float* const> inputs,
                        std::span<float* const> outputs, Scratch& scratch, RunStatus& status) {
+      const Rect around = area(number);
       if (programs_.quiet != programs_.shown && apron_ > 0) {
         run_checks(state, number, inputs, status);
         if (status.failed_check >= 0 || status.cancel) return;
-        programs_.quiet->kernel->run_samples(quiet.state, status, scratch, inputs.data(),
-                                             outputs.data(), size_of(area(number)));
+        run_tile(*programs_.quiet, quiet.state, status, scratch, inputs, outputs, around.width(),
+                 around.height());
       } else {
-        shown.kernel->run_samples(state, status, scratch, inputs.data(), outputs.data(),
-                                  size_of(area(number)));
+        run_tile(shown, state, status, scratch, inputs, outputs, around.width(), around.height());
       }
       if (status.failed_check >= 0 || status.cancel) return;
       Tile tile{tiling_.rect(number), area(number), outputs, programs_.outputs};

@@ -320,7 +320,7 @@ RenderOptions render_options(const Session& session) {
   if (const auto value = arguments.value("threads"))
     options.threads = parse_integer(*value, 0, 1024);
   if (const auto value = arguments.value("tile")) options.tile = parse_integer(*value, 1, 4096);
-  if (const auto value = arguments.value("width")) options.width = parse_integer(*value, 0, 16);
+  if (const auto value = arguments.value("width")) options.width = parse_integer(*value, 0, 32);
   options.interpret = arguments.has("interpret");
   options.optimize = !arguments.has("no-optimize");
   options.cache = !arguments.has("no-cache");

@@ -18,17 +18,20 @@
 #include "codegen/module_hash.h"
 #include "codegen/object_bundle.h"
 #include "codegen/target.h"
+#include "codegen/uniformity.h"
 #include "ir/count.h"
 
 namespace pse {
 namespace {
 
-// With all tables in registers a small program runs up to a third faster when two vectors overlap;
-// it takes twice as long to compile, so a large one does not. docs/decisions/2026-11-22-kernels.md
-// has the numbers.
-int best_width(const ir::Module& module, const Target& target) {
+// Two vectors that overlap hide each other's waiting, but take half as long again to compile: for a
+// small program where all tables are in registers, and for one whose samples leave loops at
+// different turns, which is long chains of dependent steps. docs/decisions/2026-11-22-kernels.md and
+// 2026-11-29-squares-of-rays.md have the numbers.
+int best_width(const passes::SplitModule& split, const Target& target) {
   constexpr std::size_t small = 320;
-  return target.vbmi && ir::count_instructions(module) <= small ? 2 * target.width : target.width;
+  const bool is_small = target.vbmi && ir::count_instructions(split.module) <= small;
+  return is_small || (target.avx2 && has_varying_loops(split)) ? 2 * target.width : target.width;
 }
 
 std::expected<BackendRequest, std::string> make_request(const passes::SplitModule& split,
@@ -41,7 +44,7 @@ std::expected<BackendRequest, std::string> make_request(const passes::SplitModul
     for (const Target& t : targets) known += (known.empty() ? "" : ", ") + std::string(t.name);
     return std::unexpected("there is no processor level '" + options.cpu + "'; known are " + known);
   }
-  const int width = options.width == 0 ? best_width(split.module, *target) : options.width;
+  const int width = options.width == 0 ? best_width(split, *target) : options.width;
   if (width != 1 && width != 4 && width != 8 && width != 16 && width != 32) {
     return std::unexpected("a vector cannot have " + std::to_string(width) +
                            " samples; 1, 4, 8, 16 and 32 are possible");

@@ -100,6 +100,14 @@ class Finder {
   bool changed_ = false;
 };
 
+bool has_varying_loop(const ir::Region& region, const Uniformity& uniformity) {
+  return std::ranges::any_of(region.body, [&](const ir::Instruction& in) {
+    if (in.op == Op::loop && uniformity.varying[in.regions[0].yields[0]]) return true;
+    return std::ranges::any_of(
+        in.regions, [&](const ir::Region& r) { return has_varying_loop(r, uniformity); });
+  });
+}
+
 }  // namespace
 
 Uniformity all_uniform(const ir::Function& function) {
@@ -115,6 +123,18 @@ Uniformity find_uniformity(const ir::Module& module, const ir::Function& functio
   }
   Finder(module, function, result).run();
   return result;
+}
+
+bool has_varying_loops(const passes::SplitModule& split) {
+  // What is called may be called with anything.
+  for (std::size_t f = 0; f < split.module.functions.size(); ++f) {
+    const ir::Function& function = split.module.functions[f];
+    const std::vector<bool> varying(function.body.params.size(), true);
+    if (f != split.frame &&
+        has_varying_loop(function.body, find_uniformity(split.module, function, varying)))
+      return true;
+  }
+  return false;
 }
 
 }  // namespace pse

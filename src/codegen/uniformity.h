@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ir/module.h"
+#include "passes/pipeline.h"
 
 namespace pse {
 
@@ -17,6 +18,9 @@ struct Uniformity {
 // `varying_params` says which of the function's parameters differ between samples.
 Uniformity find_uniformity(const ir::Module& module, const ir::Function& function,
                            const std::vector<bool>& varying_params);
+
+// Whether samples of one vector may leave a loop at different turns.
+bool has_varying_loops(const passes::SplitModule& split);
 
 // One sample per vector: nothing varies.
 Uniformity all_uniform(const ir::Function& function);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "stream/blocks.h"
 #include "stream/tiling.h"
 
 namespace pse {
@@ -43,6 +44,11 @@ RunResult execute(const Program& program, FrameState& state, const TileSource& s
   plan.fill = [&](std::int64_t tile, std::span<float* const> planes) {
     const Rect rect = tiling.rect(tile);
     source({rect, area(rect), planes});
+  };
+  plan.compute = [&](std::int64_t tile, std::span<float* const> inputs,
+                     std::span<float* const> outputs, Scratch& scratch, RunStatus& batch) {
+    const Rect rect = tiling.rect(tile);
+    run_tile(program, state, batch, scratch, inputs, outputs, rect.width(), rect.height());
   };
   plan.drain = [&](std::int64_t tile, std::span<float* const> planes) {
     const Rect rect = tiling.rect(tile);

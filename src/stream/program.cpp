@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include "codegen/uniformity.h"
 #include "lang/parser.h"
 
 namespace pse {
@@ -64,6 +65,8 @@ std::expected<std::shared_ptr<const Program>, std::string> compile_back(
   program->split = std::make_shared<const passes::SplitModule>(
       passes::run_pipeline(std::move(front.module), pipeline));
   program->times.passes = clock.lap();
+
+  program->parts = has_varying_loops(*program->split);
 
   // IR to kernel.
   if (options.interpret) {

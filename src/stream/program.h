@@ -37,6 +37,7 @@ struct Program {
   std::vector<std::string> reads;
   std::shared_ptr<const passes::SplitModule> split;
   std::shared_ptr<const Kernel> kernel;
+  bool parts = false;  // samples may leave its loops at different turns
   CompileTimes times;
 
   const ir::Module& module() const { return split->module; }

@@ -54,13 +54,26 @@ TEST_F(Render, AClipIsAPartOfTheSamePicture) {
 }
 
 TEST_F(Render, ThreadsTilesAndWidthsDoNotChangeAPixel) {
-  file("a.pse", "t = turbulence(point * 5)\ncolor = white * t\nalpha = t > 0.5 ? 1 : 0\n");
+  // Rays leave the march at different steps, octaves end at different turns.
+  file("a.pse",
+       "function density(p)\n"
+       "    return saturate(8 * (1 + turbulence_up_to(3 * p, 4, 0.4) - norm(p)))\n"
+       "function paint(p)\n"
+       "    return saturate(abs(p))\n"
+       "t = turbulence(point * 5)\n"
+       "c = raymarch(density, paint, [x y 2], [0 0 -1], 0, 4, 0.1)\n"
+       "color = t * [c.r c.g c.b]\n"
+       "alpha = t > 0.5 ? 1 : 0\n");
   ASSERT_EQ(pse({"render", "a.pse", "-o", "a.exr", "--res", "61x43", "--float"}).status, 0);
   for (const std::vector<std::string>& options :
        std::vector<std::vector<std::string>>{{"-t", "1"},
                                              {"-t", "3", "--tile", "7"},
                                              {"--width", "1"},
                                              {"--width", "4"},
+                                             {"--width", "8"},
+                                             {"--width", "16"},
+                                             {"--width", "32"},
+                                             {"--tier", "first"},
                                              {"--interpret"},
                                              {"--no-optimize"},
                                              {"--tiled"},

@@ -99,6 +99,29 @@ TEST_F(Prepass, AHairInTheStudioIsWhole) {
   EXPECT_EQ(whole.planes, fast.planes);
 }
 
+// A pebble that runs around a ring while the shutter is open: bounds cannot say where it is not, and
+// at one moment a ray sees nothing of most of its way.
+TEST_F(Prepass, WhatMovesIsLookedForAllThroughTheShutter) {
+  file("a.pse",
+       "function moment(origin, dir, chance)\n    return chance\n"
+       "function density(p, t)\n"
+       "    return norm(p - [0.9 * sin(6 * t), 0.9 * cos(6 * t), 0]) < 0.06 ? 1 : 0\n"
+       "function light(d)\n    return [1 1 1]\n"
+       "color = hypertexture(density, light, luminous, moment, step = 0.02, shaded = false, shadows = 0)\n");
+  const image::Image whole = render({}), fast = render({"--prepass", "4", "--stats"});
+  EXPECT_FALSE(contains(ended.err, "nothing is missed")) << ended.err;
+  file("a.pse", "color = hypertexture(nothing, shaded = false, shadows = 0)\n"
+                "function nothing(p)\n    return 0\n");
+  const image::Image backdrop = render({});
+  int there = 0, missing = 0;
+  for (std::size_t i = 0; i < whole.planes[0].size(); ++i) {
+    there += whole.planes[0][i] != backdrop.planes[0][i] ? 1 : 0;
+    missing += whole.planes[0][i] != fast.planes[0][i] ? 1 : 0;
+  }
+  EXPECT_GT(there, 50);
+  EXPECT_EQ(missing, 0);
+}
+
 TEST_F(Prepass, TellsOfSpecksThatItCannotSee) {
   // Motes of a third of a pixel's size, far apart: no search sees them all, so it is said.
   program("    return length(fract(16 * p) - 0.5) < 0.12 ? 0.9 : 0\n");

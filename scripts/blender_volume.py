@@ -58,11 +58,11 @@ def main():
 
     # Evening light from the left, sky behind.
     sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
-    sun.data.energy, sun.data.color, sun.data.angle = 9, (1, 0.78, 0.56), 0.05
+    sun.data.energy, sun.data.color, sun.data.angle = 12, (1, 0.78, 0.56), 0.05
     look_at(sun, (-4, -2.5, 2.2), (0, 0, 0))
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
-    camera.data.lens = 62
-    look_at(camera, (0, -5, 0.5), (0, 0, 0))
+    camera.data.lens = 88
+    look_at(camera, (0, -5, 0.3), (0, 0, 0.03))
     for thing in (sun, camera):
         scene.collection.objects.link(thing)
     scene.camera = camera
@@ -71,7 +71,7 @@ def main():
     world.use_nodes = True
     background = world.node_tree.nodes["Background"]
     background.inputs["Color"].default_value = (0.16, 0.26, 0.45, 1)
-    background.inputs["Strength"].default_value = 0.7
+    background.inputs["Strength"].default_value = 0.55
 
     # The picture.
     scene.render.engine = "CYCLES"
@@ -79,6 +79,8 @@ def main():
     scene.cycles.samples = samples
     scene.cycles.use_denoising = False
     scene.cycles.volume_bounces = 8
+    scene.cycles.volume_step_rate = 2
+    scene.cycles.sample_clamp_indirect = 2
     scene.render.resolution_x = scene.render.resolution_y = size
     scene.render.filepath = picture
     scene.render.image_settings.file_format = "PNG"

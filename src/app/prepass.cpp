@@ -120,13 +120,22 @@ class Prepass {
       for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, spans_.width - 1); ++nx) work(nx, ny);
   }
 
-  bool is_empty(int x, int y) const {
-    return x >= 0 && y >= 0 && x < spans_.width && y < spans_.height &&
-           spans_.empty(spans_.at(x, y));
+  // What cell i has and cell (x, y) lacks, by more than a coarse step: before and behind what that
+  // has; nothing outside of the picture.
+  std::pair<float, float> lacking(std::size_t i, int x, int y) const {
+    if (x < 0 || y < 0 || x >= spans_.width || y >= spans_.height)
+      return {nowhere_near, nowhere_far};
+    const std::size_t other = spans_.at(x, y);
+    const float near = spans_.near[i] - reach_, far = spans_.far[i] + reach_;
+    if (spans_.empty(other)) return {near, far};
+    const bool before = spans_.near[other] > spans_.near[i] + 2 * reach_;
+    const bool behind = spans_.far[other] < spans_.far[i] - 2 * reach_;
+    return {before ? near : behind ? spans_.far[other] : nowhere_near,
+            behind ? far : before ? spans_.near[other] : nowhere_far};
   }
 
-  // Where cells with matter border on cells without, looks at the outermost pixels step by step: if
-  // there is matter, it may go on next door.
+  // Where cells with matter border on cells without any, or without any as near or as far, looks at
+  // the outermost pixels step by step: if there is matter, it may go on next door.
   bool follow() {
     for (;;) {
       std::vector<SpanSearch::Ray> rays;
@@ -144,13 +153,15 @@ class Prepass {
       for (std::size_t k = 0; k < rays.size(); ++k) {
         if (!(rays[k].near < rays[k].far)) continue;
         const auto [x, y] = cells[k];
-        each_neighbour(x, y, [&](int nx, int ny) { report_.grown += is_empty(nx, ny) ? 1 : 0; });
+        each_neighbour(x, y, [&](int nx, int ny) {
+          report_.grown += spans_.empty(spans_.at(nx, ny)) ? 1 : 0;
+        });
         spread(x, y, rays[k].near - reach_, rays[k].far + reach_);
       }
     }
   }
 
-  // The pixels of a cell that touch empty cells.
+  // The pixels of a cell that touch cells which lack something, and where on their rays that is.
   void add_border(int cx, int cy, std::vector<SpanSearch::Ray>& rays,
                   std::vector<std::pair<int, int>>& cells) const {
     const int n = spans_.cell;
@@ -159,10 +170,15 @@ class Prepass {
     for (int y = y0; y <= y1; ++y)
       for (int x = x0; x <= x1; ++x) {
         const int dx = x == x0 ? -1 : x == x1 ? 1 : 0, dy = y == y0 ? -1 : y == y1 ? 1 : 0;
-        if (!is_empty(cx + dx, cy) && !is_empty(cx, cy + dy) && !is_empty(cx + dx, cy + dy))
-          continue;
+        if (dx == 0 && dy == 0) continue;
         const std::size_t i = spans_.at(cx, cy);
-        rays.push_back({x + 0.5, y + 0.5, spans_.near[i] - reach_, spans_.far[i] + reach_});
+        SpanSearch::Ray ray{x + 0.5, y + 0.5, nowhere_near, nowhere_far};
+        for (const auto& [nx, ny] : {std::pair{cx + dx, cy}, {cx, cy + dy}, {cx + dx, cy + dy}}) {
+          const auto [near, far] = lacking(i, nx, ny);
+          ray.near = std::min(ray.near, near), ray.far = std::max(ray.far, far);
+        }
+        if (!(ray.near <= ray.far)) continue;
+        rays.push_back(ray);
         cells.emplace_back(cx, cy);
       }
   }

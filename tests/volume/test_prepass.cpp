@@ -99,6 +99,27 @@ TEST_F(Prepass, AHairInTheStudioIsWhole) {
   EXPECT_EQ(whole.planes, fast.planes);
 }
 
+// A hair before a body is no thinner in its cells than what lies behind it, and yet nearer.
+TEST_F(Prepass, FollowsAHairBeforeABody) {
+  file("a.pse",
+       "function density(p)\n"
+       "    hair = norm([p.x - 0.1 * sin(4 * p.y), p.z - 1.2]) < 0.012 and abs(p.y) < 1\n"
+       "    return max(soft_sphere(p, 0.9, 0.05), hair ? 1 : 0)\n"
+       "color = hypertexture(density, shadows = 0, crevices = 0)\n");
+  const image::Image whole = render({}), fast = render({"--prepass", "4", "--stats"});
+  EXPECT_FALSE(contains(ended.err, "nothing is missed")) << ended.err;
+  EXPECT_EQ(whole.planes, fast.planes);
+}
+
+// Matter that the box cuts off, where only some rays of a pixel meet the box.
+TEST_F(Prepass, MatterUpToTheEdgeOfTheBoxIsWhole) {
+  file("a.pse",
+       "function density(p)\n    return 3 * Noise(4 * p)\n"
+       "color = hypertexture(density, step = 0.03, shadows = 0, crevices = 0)\n");
+  const image::Image whole = render({}), fast = render({"--prepass", "4"});
+  EXPECT_EQ(whole.planes, fast.planes);
+}
+
 // A pebble that runs around a ring while the shutter is open: bounds cannot say where it is not, and
 // at one moment a ray sees nothing of most of its way.
 TEST_F(Prepass, WhatMovesIsLookedForAllThroughTheShutter) {

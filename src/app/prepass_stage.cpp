@@ -98,12 +98,17 @@ Exit PrepassStage::run(Session& session, RenderOptions& options, const ProgramFi
     folder_ = name;
     pattern = (folder_ / "span.%04d.exr").string();
   }
+  const std::vector<int> frames = choose_frames(options);
+  if (frames.size() > 1 && !image::is_pattern(pattern))
+    throw usage_error(fmt::format("what the prepass finds in {} frames would all go to `{}`",
+                                  frames.size(), pattern),
+                      "put %04d into the name where the frame's number should stand");
   RunStatus status;
   const SignalWatch watch(signals, status);
   PrepassReport total;
   bool proven = true;
   double possible = 0;
-  for (const int frame : choose_frames(options)) {
+  for (const int frame : frames) {
     const ImagePlane plane{.width = size.width,
                            .height = size.height,
                            .frame = double(frame),

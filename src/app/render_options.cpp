@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
@@ -235,7 +236,7 @@ std::pair<int, double> parse_slice(const OptionValue& value) {
   const std::size_t equals = value.text.find('=');
   double place = 0;
   const bool good = equals == 1 && axes.find(value.text[0]) != std::string::npos &&
-                    read_number(value.text.substr(2), place);
+                    read_number(value.text.substr(2), place) && std::isfinite(place);
   if (!good)
     throw usage_error(fmt::format("{} takes an axis and a place, not `{}`", value.origin, value.text),
                       "--slice z=0");
@@ -285,7 +286,12 @@ RenderOptions render_options(const Session& session) {
     options.slice = parse_slice(*value);
     options.transform = slice_transform(*options.slice, options.transform);
   }
-  if (const auto value = arguments.value("prepass")) options.prepass = parse_integer(*value, 1, 64);
+  if (const auto value = arguments.value("prepass")) {
+    options.prepass = parse_integer(*value, 1, 64);
+    if (options.slice)
+      throw usage_error("--slice follows no rays that --prepass could shorten",
+                        "give one of the two");
+  }
   options.prepass_image = arguments.text_or("prepass-image", "");
   options.count_evaluations = arguments.has("stats");
   if (const auto value = arguments.value("frames")) {

@@ -166,6 +166,18 @@ TEST_F(Prepass, IsAnImageOfNearAndFar) {
   EXPECT_EQ(again.planes, render({}).planes);
 }
 
+TEST_F(Prepass, SeveralFramesWantSeveralImages) {
+  program("    return norm(p - [0.3 * time 0 0]) < 0.2 ? 1 : 0\n");
+  ended = pse({"render", "a.pse", "-o", "a.%d.exr", "-f", "1-2", "--res", "32x32",
+                           "--prepass", "4", "--prepass-image", "span.exr"});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_TRUE(contains(ended.err, "2 frames would all go to `span.exr`")) << ended.err;
+  EXPECT_EQ(pse({"render", "a.pse", "-o", "a.%d.exr", "-f", "1-2", "--res", "32x32", "--prepass", "4",
+                 "--prepass-image", "span.%d.exr"})
+                .status,
+            0);
+}
+
 TEST_F(Prepass, NeedsASpan) {
   file("b.pse", "color = [x y 0]\n");
   const Ended refused = pse({"render", "b.pse", "-o", "b.png", "--prepass", "4"});

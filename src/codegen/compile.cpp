@@ -24,10 +24,10 @@
 namespace pse {
 namespace {
 
-// Two vectors that overlap hide each other's waiting, but take half as long again to compile: for a
+// Two vectors that overlap hide each other's waiting, but take longer to compile: for a
 // small program where all tables are in registers, and for one whose samples leave loops at
-// different turns, which is long chains of dependent steps. docs/decisions/2026-11-22-kernels.md and
-// 2026-11-29-squares-of-rays.md have the numbers.
+// different turns, which is long chains of dependent steps. docs/decisions/2026-11-22-kernels.md
+// and 2026-11-29-squares-of-rays.md have the numbers.
 int best_width(const passes::SplitModule& split, const Target& target) {
   constexpr std::size_t small = 320;
   const bool is_small = target.vbmi && ir::count_instructions(split.module) <= small;

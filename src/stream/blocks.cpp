@@ -15,8 +15,9 @@ constexpr int side = 8;
 // Every other bit of n: 0, 2 and 4.
 constexpr int even_bits(int n) { return (n & 1) | (n >> 1 & 2) | (n >> 2 & 4); }
 
-// Places in a strip of width x height samples (height at most 8) in the order of computing: block by
-// block, each along Morton's curve, of which any 8, 16 or 32 in a row lie in 4 x 2, 4 x 4 or 8 x 4.
+// Places in a strip of width x height samples (height at most 8) in the order of computing: block
+// by block, each along Morton's curve, of which any 8, 16 or 32 in a row lie in 4 x 2, 4 x 4 or
+// 8 x 4.
 std::vector<std::int32_t> order_of(int width, int height) {
   std::vector<std::int32_t> order;
   order.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));

@@ -1,5 +1,5 @@
-// The order in which a tile's pixels are computed where they may part: any 8, 16 or 32 that a vector
-// holds are a small rectangle; results and failures are those of the order of rows.
+// The order in which a tile's pixels are computed where they may part: any 8, 16 or 32 that a
+// vector holds are a small rectangle; results and failures are those of the order of rows.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -61,7 +61,8 @@ TEST(Blocks, VectorsAreSmallRectangles) {
 
 TEST(Blocks, EachSampleComesBackToItsPlace) {
   for (const bool parts : {false, true})
-    for (const auto& [width, height] : {std::pair{1, 1}, {64, 64}, {65, 3}, {7, 9}, {1, 17}, {80, 1}}) {
+    for (const auto& [width, height] :
+         {std::pair{1, 1}, {64, 64}, {65, 3}, {7, 9}, {1, 17}, {80, 1}}) {
       Program program = fake_program({{"px"}, {"py"}}, {"a", "b"},
                                      [](auto inputs, auto outputs, auto count, auto& status) {
                                        test::copy_planes(inputs, outputs, count, status, 2);

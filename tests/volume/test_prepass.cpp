@@ -120,15 +120,16 @@ TEST_F(Prepass, MatterUpToTheEdgeOfTheBoxIsWhole) {
   EXPECT_EQ(whole.planes, fast.planes);
 }
 
-// A pebble that runs around a ring while the shutter is open: bounds cannot say where it is not, and
-// at one moment a ray sees nothing of most of its way.
+// A pebble that runs around a ring while the shutter is open: bounds cannot say where it is not,
+// and at one moment a ray sees nothing of most of its way.
 TEST_F(Prepass, WhatMovesIsLookedForAllThroughTheShutter) {
   file("a.pse",
        "function moment(origin, dir, chance)\n    return chance\n"
        "function density(p, t)\n"
        "    return norm(p - [0.9 * sin(6 * t), 0.9 * cos(6 * t), 0]) < 0.06 ? 1 : 0\n"
        "function light(d)\n    return [1 1 1]\n"
-       "color = hypertexture(density, light, luminous, moment, step = 0.02, shaded = false, shadows = 0)\n");
+       "color = hypertexture(density, light, luminous, moment, step = 0.02, shaded = false,\n"
+       "    shadows = 0)\n");
   const image::Image whole = render({}), fast = render({"--prepass", "4", "--stats"});
   EXPECT_FALSE(contains(ended.err, "nothing is missed")) << ended.err;
   file("a.pse", "color = hypertexture(nothing, shaded = false, shadows = 0)\n"
@@ -172,8 +173,8 @@ TEST_F(Prepass, SeveralFramesWantSeveralImages) {
                            "--prepass", "4", "--prepass-image", "span.exr"});
   EXPECT_EQ(ended.status, 2);
   EXPECT_TRUE(contains(ended.err, "2 frames would all go to `span.exr`")) << ended.err;
-  EXPECT_EQ(pse({"render", "a.pse", "-o", "a.%d.exr", "-f", "1-2", "--res", "32x32", "--prepass", "4",
-                 "--prepass-image", "span.%d.exr"})
+  EXPECT_EQ(pse({"render", "a.pse", "-o", "a.%d.exr", "-f", "1-2", "--res", "32x32", "--prepass",
+                 "4", "--prepass-image", "span.%d.exr"})
                 .status,
             0);
 }

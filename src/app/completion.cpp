@@ -50,7 +50,8 @@ _pse_knobs() {
   local i
   for i in "${words[@]:2}"; do
     [[ $i == *.pse && -f $i ]] || continue
-    compgen -W "$(pse render "$i" --help 2>/dev/null | sed -n 's/^  \([A-Z][A-Za-z0-9_]*=\).*/\1/p')" -- "$word"
+    compgen -W "$(pse render "$i" --help 2>/dev/null |
+      sed -n 's/^  \([A-Z][A-Za-z0-9_]*=\).*/\1/p')" -- "$word"
   done
 }
 _pse() {
@@ -75,8 +76,8 @@ _pse() {
           proposed(option).empty()
               ? bash_offer(option.offer)
               : fmt::format("compgen -W $'{}' -- \"$word\"", fmt::join(proposed(option), "\\n"));
-      out += fmt::format("    --{}{}) COMPREPLY=($({})); eval \"$restore\"; return ;;\n", option.name,
-                         letter, reply);
+      out += fmt::format("    --{}{}) COMPREPLY=($({})); eval \"$restore\"; return ;;\n",
+                         option.name, letter, reply);
     }
     out += "    esac\n";
     const std::string arguments =
@@ -184,7 +185,8 @@ std::string fish_script() {
       if (!option.letter.empty()) out += fmt::format(" -s {}", option.letter);
       if (takes_value(option))
         out += option.offer == Offer::nothing || !proposed(option).empty() ? " -x" : " -r";
-      if (!proposed(option).empty()) out += fmt::format(" -a '{}'", fmt::join(proposed(option), " "));
+      if (!proposed(option).empty())
+        out += fmt::format(" -a '{}'", fmt::join(proposed(option), " "));
       out += fmt::format(" -d '{}'\n", fish_text(option.help));
     }
   }

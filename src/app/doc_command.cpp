@@ -132,7 +132,8 @@ Exit doc_command(Session& session) {
     session.console.print(overview(entries));
   } else {
     for (const DocEntry& e : shown)
-      session.console.print(wrap(fmt::format("{}  ({})", e.signature, e.home), 0) + wrap(e.text, 4));
+      session.console.print(wrap(fmt::format("{}  ({})", e.signature, e.home), 0) +
+                            wrap(e.text, 4));
   }
   return Exit::ok;
 }

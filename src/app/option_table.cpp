@@ -53,9 +53,10 @@ const std::vector<CommandSpec>& table() {
       {"bake",
        "PROGRAM|MESH [MESH] [Name=VALUE...] -o FILE",
        "compute a volume, or the texture of a mesh",
-       "With a MESH (.obj .ply .gltf .glb) and a picture to write: runs PROGRAM at every texel of the "
-       "mesh's texture coordinates, where it reads point, normal and uv as on a visible surface, and "
-       "writes what it sets. As with --on the mesh is fitted; \"MESH fit=false\" keeps its size.\n"
+       "With a MESH (.obj .ply .gltf .glb) and a picture to write: runs PROGRAM at every texel of "
+       "the mesh's texture coordinates, where it reads point, normal and uv as on a visible "
+       "surface, and writes what it sets. As with --on the mesh is fitted; \"MESH fit=false\" "
+       "keeps its size.\n"
        "\n"
        "Otherwise a volume. "
        "Runs PROGRAM at every voxel of a box and writes the variables density, temperature, color "

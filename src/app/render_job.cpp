@@ -142,9 +142,11 @@ Exit RenderJob::run_frame(int index, int frame) {
   const TileSource coordinates =
       image_plane_source(program_->module(), plane_,
                          {window_.x0 - 2, window_.y0 - 2, window_.x1 + 2, window_.y1 + 2});
-  FrameWriter writer(files_, frame, common, window_, options_.nan, recipes,
-                     [this](std::size_t file, const std::string& name,
-                            const image::ImageSpec& spec) { return open_writer(file, name, spec); });
+  FrameWriter writer(
+      files_, frame, common, window_, options_.nan, recipes,
+      [this](std::size_t file, const std::string& name, const image::ImageSpec& spec) {
+        return open_writer(file, name, spec);
+      });
 
   if (index == 0 && options_.antialias.mode == antialias::Mode::supersample &&
       antialias().mode == antialias::Mode::none)
@@ -190,7 +192,8 @@ Exit RenderJob::run_frame(int index, int frame) {
 
 bool RenderJob::skip_done(int frame, const std::vector<std::string>& recipes) const {
   for (std::size_t i = 0; i < files_.size(); ++i)
-    if (files_[i].is_film() || !is_done(*image::frame_name(files_[i].pattern, frame), recipes[i])) return false;
+    if (files_[i].is_film() || !is_done(*image::frame_name(files_[i].pattern, frame), recipes[i]))
+      return false;
   for (const PlannedFile& planned : files_)
     session_.console.note(fmt::format("kept {}", *image::frame_name(planned.pattern, frame)));
   return true;
@@ -279,8 +282,9 @@ void RenderJob::write_snapshots(FrameWriter& writer) {
     if (snapshots.empty())
       session_.console.warning("there are no snapshots of films and of standard output");
     for (const auto& [name, step] : snapshots)
-      session_.console.note(step == 1 ? fmt::format("wrote {}", name)
-                                      : fmt::format("wrote {}, 1 of {}x{} pixels", name, step, step));
+      session_.console.note(step == 1
+                                ? fmt::format("wrote {}", name)
+                                : fmt::format("wrote {}, 1 of {}x{} pixels", name, step, step));
   } catch (const Failure& failure) {
     session_.console.warning(failure.what());  // the job goes on
   }

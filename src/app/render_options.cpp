@@ -88,7 +88,8 @@ void read_insertions(const Arguments& arguments, RenderOptions& options) {
     const std::size_t equals = value.text.find('=');
     const std::string name = value.text.substr(0, equals);
     const bool named = equals != std::string::npos && is_variable_name(name);
-    const ImageRequest table = {named ? name : "", named ? value.text.substr(equals + 1) : value.text};
+    const ImageRequest table = {named ? name : "",
+                                named ? value.text.substr(equals + 1) : value.text};
     if (table.file.empty())
       throw usage_error(fmt::format("{}: `{}` names no file", value.origin, value.text));
     for (const ImageRequest& other : options.insertions)
@@ -153,16 +154,18 @@ std::vector<OutputRequest> output_requests(const Arguments& arguments) {
   return outputs;
 }
 
-// `--display srgb|filmic|none`, or a display and `--view` of $OCIO's configuration, which is asked now:
-// a wrong name should not cost a rendering.
+// `--display srgb|filmic|none`, or a display and `--view` of $OCIO's configuration, which is asked
+// now: a wrong name should not cost a rendering.
 void read_display(const Arguments& arguments, image::WriteOptions& write) {
   const bool has_view = arguments.has("view");
   const std::string display = arguments.text_or("display", has_view ? "ocio" : "srgb");
   const bool own = display == "srgb" || display == "filmic" || display == "none";
   if (own && has_view)
-    throw usage_error(fmt::format("--view is one of an OpenColorIO display, and `{}` is not", display),
-                      "--display ocio, or a display of the configuration that $OCIO names");
-  write.tone = own ? *image::tone_from_name(display == "none" ? "raw" : display) : image::Tone::ocio;
+    throw usage_error(
+        fmt::format("--view is one of an OpenColorIO display, and `{}` is not", display),
+        "--display ocio, or a display of the configuration that $OCIO names");
+  write.tone =
+      own ? *image::tone_from_name(display == "none" ? "raw" : display) : image::Tone::ocio;
   if (own) return;
   const char* config = std::getenv("OCIO");
   if (display != "ocio" && (config == nullptr || *config == '\0'))
@@ -238,13 +241,14 @@ std::pair<int, double> parse_slice(const OptionValue& value) {
   const bool good = equals == 1 && axes.find(value.text[0]) != std::string::npos &&
                     read_number(value.text.substr(2), place) && std::isfinite(place);
   if (!good)
-    throw usage_error(fmt::format("{} takes an axis and a place, not `{}`", value.origin, value.text),
-                      "--slice z=0");
+    throw usage_error(
+        fmt::format("{} takes an axis and a place, not `{}`", value.origin, value.text),
+        "--slice z=0");
   return {static_cast<int>(axes.find(value.text[0])), place};
 }
 
-// The picture's plane laid into space: seen from the positive side of the axis, with y up where that
-// can be.
+// The picture's plane laid into space: seen from the positive side of the axis, with y up where
+// that can be.
 PlaneTransform slice_transform(const std::pair<int, double>& slice,
                                const std::optional<PlaneTransform>& before) {
   const double at = slice.second;
@@ -310,7 +314,8 @@ RenderOptions render_options(const Session& session) {
   options.camera = arguments.text_or("camera", "");
   options.scene = arguments.text_or("scene", "");
   if (std::filesystem::path(options.program).extension() == ".toml") {
-    if (!options.scene.empty()) throw usage_error("the program is a scene, and --scene names another");
+    if (!options.scene.empty())
+      throw usage_error("the program is a scene, and --scene names another");
     options.scene = options.program;
   }
   options.trace = arguments.command != nullptr && arguments.command->name == "trace";

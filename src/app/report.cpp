@@ -40,7 +40,9 @@ Diagnostics filtered(const Diagnostics& diagnostics, const WarningPolicy& policy
 
 Exit exit_of(const Diagnostics& diagnostics, const WarningPolicy& policy) {
   // A picture or volume that cannot be read is no fault of the program that names it.
-  const auto is_input = [](const Diagnostic& d) { return d.code == "texture" || d.code == "volume"; };
+  const auto is_input = [](const Diagnostic& d) {
+    return d.code == "texture" || d.code == "volume";
+  };
   const auto is_program = [&](const Diagnostic& d) {
     return d.severity == Severity::error && !is_input(d);
   };

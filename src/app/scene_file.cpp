@@ -227,7 +227,8 @@ SceneFile read_scene_file(const std::string& path) {
     scene.camera = read_camera(Reader(*table, path, "[camera]"));
   }
   if (const toml::node* lights = reader.take("lights"))
-    reader.fail(line_of(*lights), "a scene has no key `lights`", "write [[light]] above each light");
+    reader.fail(line_of(*lights), "a scene has no key `lights`",
+                "write [[light]] above each light");
   scene.has_lights = root.contains("light");
   read_tables(reader, "light", path,
               [&](Reader table) { scene.lights.push_back(read_light(std::move(table))); });

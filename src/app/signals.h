@@ -1,5 +1,5 @@
-// SIGINT and SIGTERM stop a job within 50 ms, SIGUSR1 asks for a snapshot. A thread of its own waits
-// for them, so nothing happens inside a signal handler.
+// SIGINT and SIGTERM stop a job within 50 ms, SIGUSR1 asks for a snapshot. A thread of its own
+// waits for them, so nothing happens inside a signal handler.
 #pragma once
 
 #include <atomic>

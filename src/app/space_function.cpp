@@ -22,7 +22,8 @@ SpaceFunction::SpaceFunction(const std::string& path, const RenderOptions& optio
   compile_with.interpret = options.interpret;
   compile_with.codegen.width = options.width;
   Diagnostics diagnostics;
-  program_ = compile(file.sources, file.file, module_host(path, session), compile_with, diagnostics);
+  program_ =
+      compile(file.sources, file.file, module_host(path, session), compile_with, diagnostics);
   report(diagnostics, file.sources, session);
   if (!program_) throw Failure(Exit::program, "");
 
@@ -49,7 +50,11 @@ void SpaceFunction::begin_frame(const ImagePlane& plane, const RunStatus& run) {
   RunStatus status{.outer = run_};
   program_->kernel->run_frame(state_, status);
   if (status.failed_check >= 0)
-    throw Failure(Exit::running, fmt::format("{}: {}", path_, program_->module().checks[static_cast<std::size_t>(status.failed_check)].message));
+    throw Failure(
+        Exit::running,
+        fmt::format(
+            "{}: {}", path_,
+            program_->module().checks[static_cast<std::size_t>(status.failed_check)].message));
 }
 
 surface::Field SpaceFunction::field() const {

@@ -1,5 +1,5 @@
-// A program as a function of space: what an isosurface is an isosurface of. It reads `point` and the
-// frame's names, and sets a number: `density`, or the first that it sets.
+// A program as a function of space: what an isosurface is an isosurface of. It reads `point` and
+// the frame's names, and sets a number: `density`, or the first that it sets.
 #pragma once
 
 #include "app/render_options.h"

@@ -54,8 +54,9 @@ std::string stats_text(const RunStats& s) {
                        pixels(s.antialias.filtered), pixels(s.antialias.blended),
                        pixels(s.antialias.supersampled));
   if (s.antialias.left > 0)
-    out += fmt::format("              {} left as they are: stored pixels tell no more of their edges\n",
-                       pixels(s.antialias.left));
+    out += fmt::format(
+        "              {} left as they are: stored pixels tell no more of their edges\n",
+        pixels(s.antialias.left));
   if (s.tier_samples.first > 0)
     out += fmt::format("code          {} samples by the first tier, {} by the optimised code\n",
                        s.tier_samples.first, s.tier_samples.optimised);
@@ -79,7 +80,8 @@ std::string stats_json(const RunStats& s) {
         {"codegen", s.compile.codegen},
         {"from_cache", s.compile.from_cache},
         {"first_tier", s.compile.first_tier}}},
-      {"samples_by_tier", {{"first_tier", s.tier_samples.first}, {"optimised", s.tier_samples.optimised}}},
+      {"samples_by_tier",
+       {{"first_tier", s.tier_samples.first}, {"optimised", s.tier_samples.optimised}}},
       {"operations",
        {{"written",
          {{"constant", s.operations.written[0]},

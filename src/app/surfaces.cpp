@@ -352,8 +352,8 @@ std::unique_ptr<SampleSource> Surfaces::samples(const ir::Module& module,
     surfaces = std::make_unique<surface::GBuffer>(module, layers_, bare->layers,
                                                   bare->reader.spec(), picture_, stored_);
   } else {
-    surfaces = std::make_unique<surface::SurfaceSource>(module, placed_, *lens_,
-                                                        joined_.front().shader->shades_background());
+    surfaces = std::make_unique<surface::SurfaceSource>(
+        module, placed_, *lens_, joined_.front().shader->shades_background());
   }
   return std::make_unique<Both>(image_plane_samples(module, plane), std::move(surfaces));
 }

@@ -127,10 +127,10 @@ Result<std::unique_ptr<ImageWriter>> open_writer(const std::string& path, const 
   // Other formats know no windows: they get the whole frame.
   ImageSpec framed = spec;
   framed.data = framed.display = {0, 0, spec.display.width(), spec.display.height()};
-  Result<std::unique_ptr<ImageWriter>> writer =
-      fail(ErrorKind::unsupported,
-           "the name " + shown +
-               " does not say a format that can be written; use .exr, .png, .jpg, .tif, .csv or .mp4");
+  Result<std::unique_ptr<ImageWriter>> writer = fail(
+      ErrorKind::unsupported,
+      "the name " + shown +
+          " does not say a format that can be written; use .exr, .png, .jpg, .tif, .csv or .mp4");
   if (format == "csv") writer = open_csv_writer(path, framed, options);
   if (format == "png") writer = open_png_writer(path, framed, options);
   if (is_foreign_format(format)) writer = open_foreign_writer(path, format, framed, options);

@@ -300,7 +300,9 @@ class Scanner {
   std::size_t foreign_letter(std::size_t at) const {
     if (at >= text_.size() || static_cast<unsigned char>(text_[at]) < 0x80) return 0;
     const Utf8Character c = utf8_decode(text_, at);
-    const auto in = [&](char32_t first, char32_t last) { return c.code >= first && c.code <= last; };
+    const auto in = [&](char32_t first, char32_t last) {
+      return c.code >= first && c.code <= last;
+    };
     const bool letter = in(0xb5, 0xb5) || (in(0xc0, 0x24f) && c.code != 0xd7 && c.code != 0xf7) ||
                         in(0x300, 0x1fff) || in(0x3041, 0xd7ff) || in(0x20000, 0x3ffff);
     return c.valid && letter ? c.length : 0;

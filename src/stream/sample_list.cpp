@@ -60,7 +60,8 @@ NeighbourTable::NeighbourTable(const SampleList& list) : table_(list.size()) {
     auto cursor = order.begin();
     for (const std::int32_t i : order) {
       const Sample& sample = list[static_cast<std::size_t>(i)];
-      const RowAndColumn wanted = {std::int64_t{sample.y} + step.dy, std::int64_t{sample.x} + step.dx};
+      const RowAndColumn wanted = {std::int64_t{sample.y} + step.dy,
+                                   std::int64_t{sample.x} + step.dx};
       while (cursor != order.end() && place_of(*cursor) < wanted) ++cursor;
       const bool found = cursor != order.end() && place_of(*cursor) == wanted;
       table_[static_cast<std::size_t>(i)][static_cast<std::size_t>(step.which)] =

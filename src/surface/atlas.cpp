@@ -83,8 +83,7 @@ std::map<int, double> tiles_of(const Mesh& mesh) {
 std::string what_is_wrong(const Mesh& mesh, int tile) {
   if (mesh.uvs.empty())
     return "the mesh has no texture coordinates (UVs), so it has no atlas; unwrap it in a "
-           "modelling "
-           "program first";
+           "modelling program first";
   for (const float value : mesh.uvs)
     if (!(std::fabs(value) < 1000))
       return "the mesh's texture coordinates go beyond 1000, so they repeat a texture and are no "
@@ -204,7 +203,8 @@ TileSource atlas_source(const ir::Module& module, const Mesh& mesh, const Atlas&
     if (module.inputs[i].rate != ir::Rate::sample) continue;
     const std::size_t dot = name.find('.');
     const std::size_t slope = std::min(name.find('$'), name.size());
-    wanted.push_back({i, name.substr(0, dot) + name.substr(slope), dot == std::string::npos ? 0 : name[dot + 1] - '0'});
+    wanted.push_back({i, name.substr(0, dot) + name.substr(slope),
+                      dot == std::string::npos ? 0 : name[dot + 1] - '0'});
   }
   const auto value = [&mesh, &atlas](const AtlasSample& s, const std::string& name) -> Vec3 {
     const auto v = corners(mesh, s.triangle);

@@ -1,5 +1,6 @@
 // A hierarchy over boxes, asked by many rays at once: rays that lie side by side go down it
-// together, each as far as its own way leads. What a scene's many objects are found by (surface/scene.h).
+// together, each as far as its own way leads. What a scene's many objects are found by
+// (surface/scene.h).
 #pragma once
 
 #include <cstdint>
@@ -16,8 +17,8 @@ class BoxTree {
   explicit BoxTree(std::span<const Box> boxes);
 
   // Calls leaf(box, which) for boxes that rays may enter before `nearest`, in some order; `which`
-  // are indices of the rays that do. leaf may lower nearest. A ray is given for every box that it meets
-  // before or at nearest, whatever the other rays are.
+  // are indices of the rays that do. leaf may lower nearest. A ray is given for every box that it
+  // meets before or at nearest, whatever the other rays are.
   template <class Leaf>
   void visit(std::span<const Ray> rays, std::vector<std::uint32_t> all,
              std::span<const double> nearest, const Leaf& leaf) const {

@@ -7,8 +7,8 @@ namespace pse::surface {
 
 struct Camera {
   Vec3 eye{0, 0, 5}, target, up{0, 1, 0};
-  // False where the view is along `up`, so that nothing says what is upward. Along Y something does:
-  // X stays to the right.
+  // False where the view is along `up`, so that nothing says what is upward. Along Y something
+  // does: X stays to the right.
   bool has_upright() const;
   double fov = 30;     // degrees from the picture's bottom to its top
   double height = 0;   // orthographic where not 0: metres from bottom to top
@@ -41,8 +41,8 @@ class Lens {
     return parallel_ ? pixel_ : pixel_ * t * dot(ray.direction, forward_);
   }
   double pixel_angle() const { return pixel_; }
-  // Where in the picture a point is seen, in pixels, and how wide a pixel is at its depth; not above
-  // 0 for what is not before the eye, and of no use then.
+  // Where in the picture a point is seen, in pixels, and how wide a pixel is at its depth; not
+  // above 0 for what is not before the eye, and of no use then.
   struct Seen {
     double x, y, pixel;
   };

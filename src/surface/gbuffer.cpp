@@ -1,5 +1,5 @@
-// From stored channels to the names of surfaces. Layers are copied; what a renderer did not store is
-// worked out from the rest.
+// From stored channels to the names of surfaces. Layers are copied; what a renderer did not store
+// is worked out from the rest.
 #include "surface/gbuffer.h"
 
 #include <algorithm>
@@ -128,7 +128,8 @@ std::vector<StreamName> gbuffer_names(const SurfaceLayers& layers,
   add("id", 1), add("hit", 1), add("depth", 1), add("pixelsize", 1), add("pixel_freq", 1);
   add("backface", 1);
   if (layers.contains("uv")) add("u", 1), add("v", 1);
-  if (frame.eye) add("direction", 3), add("origin", 3), names.push_back({"eye", 3, ir::Rate::frame});
+  if (frame.eye)
+    add("direction", 3), add("origin", 3), names.push_back({"eye", 3, ir::Rate::frame});
   if (frame.eye || layers.contains("direction")) add("view", 3);
   names.push_back({"light_count", 1, ir::Rate::frame});
   for (std::size_t i = 0; i < frame.lights.size(); ++i) {
@@ -321,7 +322,8 @@ float GBuffer::value(const Wanted& wanted, std::size_t pixel) const {
       return !seen ? 0 : id_ != nullptr && id_[pixel] >= 1 ? id_[pixel] : 1;
     }
     case What::hit: return seen_at(pixel) ? 1.0f : 0.0f;
-    case What::depth: return static_cast<float>(length(vector_at(place_, pixel) - frame_.eye.value_or(Vec3{})));
+    case What::depth:
+      return static_cast<float>(length(vector_at(place_, pixel) - frame_.eye.value_or(Vec3{})));
     case What::direction: return part(direction_at(pixel));
     case What::view: return part(-direction_at(pixel));
     case What::pixelsize: return static_cast<float>(pixelsize_at(pixel));
@@ -331,11 +333,13 @@ float GBuffer::value(const Wanted& wanted, std::size_t pixel) const {
       return static_cast<float>(0.5 / width);
     }
     case What::nothing: return 0;
-    default: return part(light_value(*light, wanted.what == What::light_direction  ? LightPart::direction
-                                         : wanted.what == What::light_color    ? LightPart::color
-                                         : wanted.what == What::light_position ? LightPart::position
-                                                                               : LightPart::radius,
-                             vector_at(place_, pixel)));
+    default:
+      return part(light_value(*light,
+                              wanted.what == What::light_direction  ? LightPart::direction
+                              : wanted.what == What::light_color    ? LightPart::color
+                              : wanted.what == What::light_position ? LightPart::position
+                                                                    : LightPart::radius,
+                              vector_at(place_, pixel)));
   }
 }
 
@@ -358,10 +362,10 @@ void GBuffer::fill(std::span<const double> x, std::span<const double> y,
         data_.contains(px, py)
             ? std::int64_t{py - data_.y0} * data_.width() + (px - data_.x0)
             : outside;
-    const bool goes_on = !rows.empty() && (pixel == outside
-                                               ? rows.back().pixel == outside
-                                               : rows.back().pixel != outside &&
-                                                     rows.back().pixel + rows.back().count == pixel);
+    const bool goes_on =
+        !rows.empty() && (pixel == outside ? rows.back().pixel == outside
+                                           : rows.back().pixel != outside &&
+                                                 rows.back().pixel + rows.back().count == pixel);
     goes_on ? void(++rows.back().count) : rows.push_back({static_cast<std::int64_t>(i), 1, pixel});
   }
   for (const Wanted& wanted : wanted_) {
@@ -391,7 +395,8 @@ void GBuffer::fill_row(const Wanted& wanted, std::int64_t first, std::int64_t co
     case What::layer: std::copy_n(plane + first, count, out); return;
     case What::negated: return all([&](std::size_t pixel) { return -plane[pixel]; });
     case What::slope_x: return all([&](std::size_t pixel) { return slope_at(plane, true, pixel); });
-    case What::slope_y: return all([&](std::size_t pixel) { return slope_at(plane, false, pixel); });
+    case What::slope_y:
+      return all([&](std::size_t pixel) { return slope_at(plane, false, pixel); });
     case What::id:
       if (hit_ == nullptr || id_ != nullptr) break;
       return all([&](std::size_t pixel) { return hit_[pixel] > 0 ? 1.0f : 0.0f; });

@@ -51,8 +51,22 @@ class GBuffer : public SampleSource {
 
  private:
   enum class What {
-    layer, negated, slope_x, slope_y, id, hit, depth, direction, view, pixelsize, pixel_freq, nothing,
-    light_direction, light_color, light_position, light_radius
+    layer,
+    negated,
+    slope_x,
+    slope_y,
+    id,
+    hit,
+    depth,
+    direction,
+    view,
+    pixelsize,
+    pixel_freq,
+    nothing,
+    light_direction,
+    light_color,
+    light_position,
+    light_radius
   };
   struct Wanted {
     std::size_t input;

@@ -1,6 +1,6 @@
-// The shape formed by an isosurface of a space function (1985, "Now what?"). All rays of a batch are
-// marched together, so that the function is asked for many points at once; where its sign changes,
-// the place is narrowed down by false position.
+// The shape formed by an isosurface of a space function (1985, "Now what?"). All rays of a batch
+// are marched together, so that the function is asked for many points at once; where its sign
+// changes, the place is narrowed down by false position.
 #include <numbers>
 #include <sstream>
 

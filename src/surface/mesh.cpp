@@ -1,5 +1,5 @@
-// Reading a mesh, and a mesh as a shape. The tree says which triangle a ray meets; where it meets it
-// is computed here in double, so that the hit does not depend on how the tree found it.
+// Reading a mesh, and a mesh as a shape. The tree says which triangle a ray meets; where it meets
+// it is computed here in double, so that the hit does not depend on how the tree found it.
 #include "surface/mesh.h"
 
 #include <filesystem>
@@ -145,8 +145,10 @@ std::expected<LoadedMesh, std::string> load_mesh(const std::string& file,
   const Box box = mesh->bounds();
   if (std::max({-box.lower.x, -box.lower.y, -box.lower.z, box.upper.x, box.upper.y,
                 box.upper.z}) > farthest)
-    return std::unexpected(file + ": the mesh reaches beyond 1e18 from the origin, where rays do not; make it "
-                           "smaller, or let fit do it");
+    return std::unexpected(
+        file +
+        ": the mesh reaches beyond 1e18 from the origin, where rays do not; make it "
+        "smaller, or let fit do it");
   if (mesh->normals.empty()) derive_normals(*mesh, options.crease);
   for (std::string& note : *notes) note = file + ": " + note;
   return LoadedMesh{std::move(mesh), std::move(*notes)};

@@ -59,9 +59,9 @@ struct TriangleHit {
 class TriangleTree {
  public:
   virtual ~TriangleTree() = default;
-  // The triangle that each ray meets first, as far as single precision tells; of several at the same
-  // distance, the one with the least number. It depends on the ray alone. Fastest where each 16
-  // rays in a row lie side by side, and 8 of them too.
+  // The triangle that each ray meets first, as far as single precision tells; of several at the
+  // same distance, the one with the least number. It depends on the ray alone. Fastest where each
+  // 16 rays in a row lie side by side, and 8 of them too.
   virtual void first(std::span<const Ray> rays, std::span<TriangleHit> hits) const = 0;
 };
 class MeshTools {

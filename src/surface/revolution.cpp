@@ -211,7 +211,8 @@ class Revolution : public Shape {
 
   ShapePoint look(const Vec3& p, const Meeting& meeting, bool with_uv) const {
     const Piece& piece = pieces_[meeting.part];
-    const double r = std::sqrt(p.x * p.x + p.z * p.z), c = r > 0 ? p.x / r : 1, s = r > 0 ? p.z / r : 0;
+    const double r = std::sqrt(p.x * p.x + p.z * p.z), c = r > 0 ? p.x / r : 1,
+                 s = r > 0 ? p.z / r : 0;
     // Outward is to the right of the profile's direction.
     const double sign = cubic(piece.radius, meeting.a) < 0 ? -1 : 1;
     double out = sign * slope(piece.height, meeting.a), up = -slope(piece.radius, meeting.a);

@@ -30,8 +30,8 @@ struct Search {
     for (std::size_t i = degree; i-- > 0;) slope = slope * x + value, value = value * x + power[i];
   }
 
-  // The sign changes once within [a, b], where the values are at_a and at_b, of different sign or 0.
-  // A value of 0 at an end is another root, at which this one must not stop.
+  // The sign changes once within [a, b], where the values are at_a and at_b, of different sign or
+  // 0. A value of 0 at an end is another root, at which this one must not stop.
   void refine(double a, double b, double at_a, double at_b, bool above) {
     double x = a + (b - a) * (at_a * at_b < 0 ? at_a / (at_a - at_b) : 0.5);
     for (int step = 0; step < 60; ++step) {

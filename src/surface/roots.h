@@ -1,5 +1,5 @@
-// Roots of polynomials by isolation: a polynomial in Bernstein form has at most as many roots in its
-// interval as its coefficients change sign, so intervals are halved until there is one root or
+// Roots of polynomials by isolation: a polynomial in Bernstein form has at most as many roots in
+// its interval as its coefficients change sign, so intervals are halved until there is one root or
 // none. No root is lost however close two lie, which is what closed formulas for quartics cannot
 // promise.
 #pragma once
@@ -16,8 +16,9 @@ struct Roots {
   std::size_t count = 0;
 };
 
-// The roots in [0, 1], ends included, of c[0] + c[1] x + ... + c[degree] x^degree, rising; degree up
-// to 6. Double roots may be given once, twice or not at all. `first_only` stops at the least one.
+// The roots in [0, 1], ends included, of c[0] + c[1] x + ... + c[degree] x^degree, rising; degree
+// up to 6. Double roots may be given once, twice or not at all. `first_only` stops at the least
+// one.
 Roots roots_in_unit(const double* coefficients, std::size_t degree, bool first_only);
 
 // The same for a polynomial whose Bernstein coefficients are known as well; both of degree + 1. All

@@ -58,8 +58,8 @@ class Superquadric : public SingleShape {
     return t;
   }
 
-  // Small steps, then halving: for shapes with waists. The function is least where the ray crosses a
-  // plane between octants, so steps begin and end there.
+  // Small steps, then halving: for shapes with waists. The function is least where the ray crosses
+  // a plane between octants, so steps begin and end there.
   double march(const Ray& ray, double begin, double end) const {
     std::array<double, 5> stops = {begin, begin, begin, begin, end};
     for (int axis = 0; axis < 3; ++axis) {

@@ -223,9 +223,9 @@ SurfaceSource::SurfaceSource(const ir::Module& module, std::shared_ptr<const Sce
 
 namespace {
 
-// The order in which rays are sent: where samples are rows of a picture, in blocks of 4 by 4 pixels,
-// so that eight or sixteen rays in a row lie side by side. (What a sample shows does not depend on
-// it.) The last one made is kept, since most tiles have the same.
+// The order in which rays are sent: where samples are rows of a picture, in blocks of 4 by 4
+// pixels, so that eight or sixteen rays in a row lie side by side. (What a sample shows does not
+// depend on it.) The last one made is kept, since most tiles have the same.
 class Order {
  public:
   std::span<const std::uint32_t> of(std::span<const double> y) {

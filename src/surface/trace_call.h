@@ -1,5 +1,5 @@
-// trace(), radiance() and visible() of programs: rays sent from inside a program into the scene that
-// is being rendered. Bound to the kernel's externals (codegen/kernel.h).
+// trace(), radiance() and visible() of programs: rays sent from inside a program into the scene
+// that is being rendered. Bound to the kernel's externals (codegen/kernel.h).
 #pragma once
 
 #include "codegen/kernel.h"

@@ -41,7 +41,8 @@ Lattice::Lattice(const Box& box, const LatticeSize& size, bool z_up) : z_up_(z_u
   double longest = 0;
   for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, box.high[a] - box.low[a]);
   for (int axis = 0; axis < 3; ++axis) {
-    const auto from = static_cast<std::size_t>(axis), to = static_cast<std::size_t>(file_axis(axis));
+    const auto from = static_cast<std::size_t>(axis),
+               to = static_cast<std::size_t>(file_axis(axis));
     const double side = box.high[from] - box.low[from];
     if (size.each[0] > 0) {
       size_[to] = size.each[from];

@@ -66,7 +66,8 @@ struct FileInfo {
 struct GridData {
   int components = 1;
   GridKind kind = GridKind::data;
-  std::array<double, 12> to_index{};  // rows of the map from metres to voxels: (i j k) = M (x y z 1)
+  std::array<double, 12>
+      to_index{};  // rows of the map from metres to voxels: (i j k) = M (x y z 1)
   std::vector<float> background;      // one per component
   std::array<int, 3> low{};           // first block of the box of blocks, in blocks
   std::array<int, 3> size{};          // blocks along each axis
@@ -82,15 +83,15 @@ struct GridData {
 class GridWriter {
  public:
   virtual ~GridWriter() = default;
-  // `planes`: the block's voxels, one array of 512 per component; word x of `active` has bit 8 y + z
-  // set where the voxel holds a value. `block`: its place in blocks.
+  // `planes`: the block's voxels, one array of 512 per component; word x of `active` has bit 8 y +
+  // z set where the voxel holds a value. `block`: its place in blocks.
   virtual void add(std::size_t grid, const std::array<int, 3>& block,
                    std::span<const float* const> planes,
                    const std::array<std::uint64_t, 8>& active) = 0;
   // Roughly the bytes held.
   virtual std::size_t bytes() const = 0;
-  // Fills the inside of level sets and writes the file at `path` directly. `identity`: 36 characters
-  // that stand for the file (OpenVDB would draw lots).
+  // Fills the inside of level sets and writes the file at `path` directly. `identity`: 36
+  // characters that stand for the file (OpenVDB would draw lots).
   virtual Result<void> write(const std::string& path,
                              const std::map<std::string, std::string>& attributes,
                              const std::string& identity) = 0;

@@ -27,8 +27,8 @@ Result<GridInfo> VolumeCache::choose(const std::string& file, const std::string&
   for (const GridInfo& there : grids) {
     if (there.name == (grid.empty() ? "density" : grid) || (grid.empty() && grids.size() == 1)) {
       if (there.components > 0) return there;
-      return fail(ErrorKind::bad_request, file + ": grid `" + there.name + "` holds values of type " +
-                                              there.type +
+      return fail(ErrorKind::bad_request, file + ": grid `" + there.name +
+                                              "` holds values of type " + there.type +
                                               "; numbers and vectors of three can be read");
     }
     names += (names.empty() ? "" : ", ") + there.name;

@@ -173,8 +173,8 @@ void use_one_thread() {
   (void)done;
 }
 
-// Readers are opened in a process forked from ours (foreign_child.h). So nothing that starts threads
-// is asked of the library before: a lock that one of them held would stay locked there.
+// Readers are opened in a process forked from ours (foreign_child.h). So nothing that starts
+// threads is asked of the library before: a lock that one of them held would stay locked there.
 class OiioImages : public ForeignImages {
  public:
   ForeignReader* open(const std::string& path, std::string& error) override {

@@ -8,7 +8,8 @@
 namespace pse::volume {
 namespace {
 
-// With these types the conversion stands in OpenVDB's library; others take half a minute to compile.
+// With these types the conversion stands in OpenVDB's library; others take half a minute to
+// compile.
 using Triangles = openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I>;
 
 class Interrupter : public openvdb::util::NullInterrupter {

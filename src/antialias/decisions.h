@@ -37,18 +37,15 @@ struct Decisions {
     return by < dithered.size() && dithered[by];
   }
 
-  // Whether a loop searches, as a ray's march does: it turns differently often from sample to
-  // sample, but nothing that it ends with counts the turns. Ending a turn earlier or later is no
-  // edge then; ending elsewhere is.
+  // Whether a loop searches, as a ray's march does: how often it turns hangs on what its turns hand
+  // on to each other and differs from sample to sample, but nothing that it ends with counts the
+  // turns. Ending a turn earlier or later is no edge then; ending elsewhere is.
   bool is_search(const ir::Instruction& in) const {
     if (in.op != ir::Op::loop) return false;
     const ir::Value by = in.regions[0].yields[0];
     return by < searched.size() && searched[by];
   }
 };
-
-// Leaves out the decisions within searches: they are of the way there, not of the end.
-void leave_out_searches(const ir::Region& region, Decisions& decisions);
 
 // Gives the module's values their rates, and finds the decisions.
 Decisions find_decisions(ir::Module& module);

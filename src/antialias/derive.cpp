@@ -5,6 +5,7 @@
 
 #include "antialias/edge_state.h"
 #include "antialias/rotate.h"
+#include "antialias/searches.h"
 #include "passes/deriver.h"
 
 namespace pse::antialias {

@@ -4,9 +4,11 @@
 #include <algorithm>
 
 #include "antialias/dither.h"
+#include "antialias/seams.h"
 #include "antialias/searches.h"
 #include "passes/passes.h"
 #include "passes/slice.h"
+#include "passes/slope_rules.h"
 
 namespace pse::antialias {
 namespace {
@@ -25,6 +27,26 @@ void for_each(const Region& region, const Decisions& found, const Visit& visit) 
     if (found.is_dither(in)) continue;
     for (const Region& inner : in.regions) for_each(inner, found, visit);
   }
+}
+
+bool uses_noise(const ir::Module& module, const passes::Slice& slice, const Region& region) {
+  return std::ranges::any_of(region.body, [&](const Instruction& in) {
+    if (in.op == Op::call)
+      return slice[in.results[0]] &&
+             !passes::has_partials(module.functions[static_cast<std::size_t>(in.imm)].name);
+    return std::ranges::any_of(in.regions, [&](const Region& inner) {
+      return uses_noise(module, slice, inner);
+    });
+  });
+}
+
+// Whether a value is computed from noise, which folds all over the picture: from any function but
+// those of the math library.
+bool is_of_noise(const ir::Module& module, Value value) {
+  passes::Slice slice(module.main());
+  slice.need(value);
+  slice.run();
+  return uses_noise(module, slice, module.main().body);
 }
 
 }  // namespace
@@ -51,12 +73,15 @@ Cut cut_of(Op op) {
 }
 
 Decisions find_decisions(ir::Module& module) {
+  const std::size_t own = module.main().values.size();
+  const std::vector<Value> seams = add_seams(module);
   passes::assign_rates(module);
   const Function& main = module.main();
   Decisions found;
   found.forks.resize(main.values.size());
   found.bends.resize(main.values.size());
-  passes::Slice bends(main);
+  found.creases.resize(main.values.size());
+  passes::Slice bends(main), lines(main, false);
   // Dither is no edge: it decides anew in each pixel, and a ray marcher with a jittered step does so
   // all along its way.
   found.dithered = find_dither(module);
@@ -66,14 +91,22 @@ Decisions find_decisions(ir::Module& module) {
   for_each(main.body, found, [&](const Instruction& in) {
     const Cut cut = cut_of(in.op);
     if (cut == Cut::none || in.op == Op::fabs || !differs(in)) return;
+    // Of what lays a seam open the seam alone is a decision.
+    if (in.result() >= own && std::ranges::find(seams, in.result()) == seams.end()) return;
     found.forks[in.result()] = found.any = true;
     if (cut == Cut::kink) return;
     found.any_jump = true;
-    for (const Value operand : in.operands) bends.need(operand);
+    for (const Value operand : in.operands) bends.need(operand), lines.need(operand);
   });
   bends.run();
+  lines.run();
   for_each(main.body, found, [&](const Instruction& in) {
-    if (in.op == Op::fabs && differs(in) && bends[in.result()]) found.bends[in.result()] = true;
+    const Cut cut = cut_of(in.op);
+    if (cut == Cut::none || cut == Cut::compare || !differs(in)) return;
+    if (in.op == Op::fabs) found.bends[in.result()] = bends[in.result()];
+    const bool may_crease = in.op == Op::fabs || cut != Cut::kink;
+    found.creases[in.result()] =
+        may_crease && lines[in.result()] && !is_of_noise(module, in.operands[0]);
   });
   find_searches(main, found);
   return found;

@@ -24,6 +24,9 @@ Cut cut_of(ir::Op op);
 struct Decisions {
   std::vector<bool> forks;     // jumps, and min and max: a steep clamp is an edge to the eye
   std::vector<bool> bends;     // abs where some jump depends on it: it bends an edge
+  // Of these and of steps, those that a jump is computed from: a line that is thinner than a pixel
+  // may lie on one. None that are made of noise, or that only choose a random number.
+  std::vector<bool> creases;
   std::vector<bool> dithered;  // what depends on chance (dither.h): none of these is an edge
   std::vector<bool> searched;  // the conditions of loops that search
   std::vector<bool> ends;      // the results of these that are used
@@ -47,7 +50,7 @@ struct Decisions {
   }
 };
 
-// Gives the module's values their rates, and finds the decisions.
+// Gives the module's values their rates and lays seams open (seams.h), and finds the decisions.
 Decisions find_decisions(ir::Module& module);
 
 }  // namespace pse::antialias

@@ -82,8 +82,8 @@ Decisions find_decisions(ir::Module& module) {
   found.bends.resize(main.values.size());
   found.creases.resize(main.values.size());
   passes::Slice bends(main), lines(main, false);
-  // Dither is no edge: it decides anew in each pixel, and a ray marcher with a jittered step does so
-  // all along its way.
+  // Dither is no edge: it decides anew in each pixel, and a ray marcher with a jittered step does
+  // so all along its way.
   found.dithered = find_dither(module);
   const auto differs = [&](const Instruction& in) {
     return main.values[in.result()].rate == ir::Rate::sample && !found.dithered[in.result()];

@@ -66,7 +66,8 @@ template <class V>
 }
 template <class V>
 [[gnu::always_inline]] inline V square_root(V values) {
-  for (std::size_t lane = 0; lane < lanes_of<V>; ++lane) values[lane] = __builtin_sqrtf(values[lane]);
+  for (std::size_t lane = 0; lane < lanes_of<V>; ++lane)
+    values[lane] = __builtin_sqrtf(values[lane]);
   return values;
 }
 // `low` to `high`; NaN stays.

@@ -226,12 +226,11 @@ class Search {
     for (std::size_t o = 0; o < tile_.outputs; ++o) {
       const float* at = tile_.planes[o] + here;
       const Values value = load<Values>(at);
-      const Jumps<Values> found =
-          jumps(value, load<Values>(at + step), load<Values>(at - step), least_step_from(value), alone);
+      const Values next = load<Values>(at + step), last = load<Values>(at - step);
+      const Jumps<Values> found = jumps(value, next, last, least_step_from(value), alone);
       jumps_ahead |= ahead & found.ahead;
       jumps_back |= back & found.back;
-      const Values bend = size((load<Values>(at + step) - value) + (load<Values>(at - step) - value));
-      seen.edge |= (ahead | back) & (bend > least_bend);
+      seen.edge |= (ahead | back) & (size((next - value) + (last - value)) > least_bend);
     }
     seen.edge |= jumps_ahead | jumps_back;
     seen.untold |= (jumps_ahead & ends.ahead) | (jumps_back & ends.back);

@@ -53,7 +53,8 @@ class Paths {
       const Instruction& written = out.back();
       const bool jumps = written.results.size() == 1 &&
                          written.result() < decisions_.forks.size() &&
-                         (decisions_.forks[written.result()] || is_fold(written.op, written.result()));
+                         (decisions_.forks[written.result()] ||
+                          is_fold(written.op, written.result()));
       if (searches && way.ends != no_value)
         way.ends = with_ends(Emit(function_, out), std::vector(written.results), way.ends);
       else if (jumps)

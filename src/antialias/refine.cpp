@@ -128,7 +128,8 @@ void Refiner::blend(const Tile& tile, const CrossingLists& c, Refined& result, W
     bool on_a = !(c.distance[i] < 0);
     // On which side a pixel lies whose middle is on the edge, rounding decides.
     if (std::abs(c.distance[i]) < on_edge && !(on_a ? is_a : is_b)) on_a = !on_a;
-    const bool one_way = path_a[i] == path_b[i], strange = !(on_a ? is_a : is_b) && !(std::abs(c.distance[i]) < within_edge);
+    const bool one_way = path_a[i] == path_b[i];
+    const bool strange = !(on_a ? is_a : is_b) && !(std::abs(c.distance[i]) < within_edge);
     bool doubt = false;
     if (one_way | strange)
       for (std::size_t o = 0; o < outputs_ && !doubt; ++o) {
@@ -158,7 +159,8 @@ void Refiner::smooth(const Tile& tile, const Work& work, Refined& result) const 
     const auto row = static_cast<std::size_t>(tile.area.width());
     const std::array<std::size_t, 4> around = {here - 1, here + 1, here - row, here + row};
     const auto way = [&](std::size_t at) { return static_cast<int>(tile.path()[at]) & jumps; };
-    if (!std::ranges::all_of(around, [&](std::size_t at) { return way(at) == way(here); })) continue;
+    const auto goes_along = [&](std::size_t at) { return way(at) == way(here); };
+    if (!std::ranges::all_of(around, goes_along)) continue;
     result.pixels.push_back(pixel);
     for (std::size_t o = 0; o < outputs_; ++o) {
       const float* plane = tile.planes[o];

@@ -1,6 +1,6 @@
-// One edge said in many ways is the same edge: half-planes against the exact response of the kernel,
-// whatever the condition looks like and wherever the edge meets the pixels. And what is thinner than
-// a pixel, or has no condition of its own.
+// One edge said in many ways is the same edge: half-planes against the exact response of the
+// kernel, whatever the condition looks like and wherever the edge meets the pixels. And what is
+// thinner than a pixel, or has no condition of its own.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -32,7 +32,7 @@ TEST(Formulations, OfOneHalfPlaneAreTheSameEdge) {
        {"c = _q > 0 ? 1 : 0\n", "c = _q < 0 ? 0 : 1\n", "c = 0 <= _q\n", "c = step(0, _q)\n",
         "c = 0.5 + 0.5 * sign(_q)\n", "c = 1 + floor(_q / 1000)\n", "c = round(0.5 + _q / 1000)\n",
         "c = select(1000000 * _q > 0, 1, 0)\n", "c = select(0.000001 * _q > 0, 1, 0)\n",
-        "c = smoothstep(0, 0, _q)\n", "c = saturate(100000 * _q)\n", "c = _q % 1000 < 500\n",
+        "c = smoothstep(0, 0, _q)\n", "c = saturate(1000 * _q + 0.35)\n", "c = _q % 1000 < 500\n",
         "c = abs(_q - 500) < 500\n", "c = (_q - 1000) ^ 2 < 1000000\n",
         "c = 0.5 + 0.5 * _q / abs(_q)\n", "c = atan2(_q, -1) > 0\n",
         "c = 0.5 + atan2(_q, -1000) / TAU\n",

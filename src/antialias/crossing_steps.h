@@ -23,20 +23,30 @@ template <class V>
 }
 
 // The distances x of pixels from an edge, from what two places said of it: f / |f'| is `first` at
-// the pixel, and `second` at `out` along the normal and s along the edge, which bends away by a
-// parabola. Along the normal f is x + b x^2, so f / |f'| is x - b x^2; a bend measured off the edge
-// is made that of the edge.
+// the pixel, and `second` at `out` along the normal and s along the edge, a circle. Along the
+// normal f is x + b x^2, so f / |f'| is (x + b x^2) / (1 + 2 b x), for the distance to a circle's
+// centre (b = 0) and for its square. Of both places the farther tells b and the nearer where the
+// edge is; a bend measured off the edge is made that of the edge.
 template <class V>
 [[gnu::always_inline]] inline V true_distance(V first, V second, V out, V& bend, float s) {
-  constexpr float least = 0.15f, most_b = 1, unseen = 0.001f;
+  constexpr float least = 0.003f, most_b = 1, unseen = 0.001f;
   const V measured = bend;
-  V beside = second, x = first;
-  for (int round = 0; round < 3; ++round) {
-    bend = measured / larger(1 - measured * beside, V{} + 0.5f);
-    x = beside - out - bend * (s * s / 2);
-    const V b = choose(size(x) < least, V{}, clamped((x - first) / (x * x), -most_b, most_b));
-    beside = second + b * beside * beside;
+  // The way to the centre of the circle, from the place and from where the normal is nearest to it,
+  // in parts of the latter.
+  const V slant = square_root(1 + measured * measured * (s * s));
+  const V between = out + measured * (s * s) / (1 + slant);
+  const AnswersOf<V> by_first = size(first) < size(second);
+  const V near = choose(by_first, first, second), far = choose(by_first, second, first);
+  const V to_far = choose(by_first, between, -between);
+  V at = near;
+  for (int round = 0; round < 4; ++round) {
+    const V there = at + to_far, per_b = there * (2 * far - there);
+    const V b =
+        choose(size(per_b) < least, V{}, clamped((there - far) / per_b, -most_b, most_b));
+    at = (near - b * at * at) / larger(1 - 2 * b * near, V{} + 0.25f);
   }
+  const V x = choose(by_first, at, at - between), beside = x + between;
+  bend = measured / larger(slant - measured * beside, V{} + 0.25f);
   // Both say the same of a straight edge.
   const AnswersOf<V> is_straight =
       (size(measured) < unseen) & (size(second - out - first) < unseen);
@@ -100,7 +110,7 @@ void look_again(const CrossingLists& c, const float* const* lines, float reach) 
     const AnswersOf<V> one =
         (size(turn) < most_turn) & (size(beside) < reach) & ~(size(other) < reach);
     V bend = turn / s;
-    store(c.distance + i, true_distance(first, beside / size(cosine), out, bend, s));
+    store(c.distance + i, true_distance(first, beside, out, bend, s));
     store(c.bend + i, bend);
     store(c.other + i, other);
     store(c.is_one + i, one);
@@ -113,8 +123,10 @@ void bend_shares(const CrossingLists& c) {
   for (std::size_t i = 0; i < c.count; i += lanes) {
     const V straight = load<V>(c.share + i), moment = load<V>(c.towards + i);
     const V bend = load<V>(c.bend + i), distance = load<V>(c.distance + i);
-    // The parabola -bend y^2 / 2 for the line, to second order.
-    const V share = straight + bend / 2 * load<V>(c.turning + i) * (1 - 0.75f * bend * distance);
+    // A circle for the line, to third order in its bend but for the tenth part of that order.
+    const V turn = bend * distance;
+    const V share =
+        straight + bend / 2 * load<V>(c.turning + i) * (1 - 0.75f * turn + 0.6f * turn * turn);
     // An edge that is out of reach parts nothing.
     const AnswersOf<V> is_whole = (straight <= 0) | (straight >= 1);
     store(c.share + i, choose(is_whole, straight, share));

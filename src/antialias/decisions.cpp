@@ -4,9 +4,11 @@
 #include <algorithm>
 
 #include "antialias/dither.h"
+#include "antialias/seams.h"
+#include "antialias/searches.h"
 #include "passes/passes.h"
-#include "passes/rewrite.h"
 #include "passes/slice.h"
+#include "passes/slope_rules.h"
 
 namespace pse::antialias {
 namespace {
@@ -27,129 +29,27 @@ void for_each(const Region& region, const Decisions& found, const Visit& visit) 
   }
 }
 
-bool stores(const Region& region) {
-  return std::ranges::any_of(region.body, [](const Instruction& in) {
-    return passes::writes_array(in.op) || std::ranges::any_of(in.regions, stores);
+bool uses_noise(const ir::Module& module, const passes::Slice& slice, const Region& region) {
+  return std::ranges::any_of(region.body, [&](const Instruction& in) {
+    if (in.op == Op::call)
+      return slice[in.results[0]] &&
+             !passes::has_partials(module.functions[static_cast<std::size_t>(in.imm)].name);
+    return std::ranges::any_of(in.regions, [&](const Region& inner) {
+      return uses_noise(module, slice, inner);
+    });
   });
 }
 
-// What instructions use, in regions inside too.
-void find_uses(const Region& region, std::vector<bool>& used) {
-  const auto use = [&](const std::vector<Value>& values) {
-    for (const Value value : values) used[value] = true;
-  };
-  for (const Instruction& in : region.body) {
-    use(in.operands);
-    for (const Region& inner : in.regions) find_uses(inner, used);
-  }
-  use(region.yields);
-}
-
-class Searches {
- public:
-  Searches(const Function& function, Decisions& found)
-      : function_(function), found_(found), used_(function.values.size()) {
-    find_uses(function.body, used_);
-    found.searched.resize(function.values.size());
-    found.ends.resize(function.values.size());
-  }
-
-  void find(const Region& region) {
-    for (const Instruction& in : region.body) {
-      if (in.op == Op::loop && !found_.is_dither(in) && is_search(in)) {
-        found_.searched[in.regions[0].yields[0]] = true;
-        for (const Value end : in.results) found_.ends[end] = used_[end];
-      }
-      for (const Region& inner : in.regions) find(inner);
-    }
-  }
-
- private:
-  bool differs(Value value) const { return function_.values[value].rate == ir::Rate::sample; }
-
-  bool is_search(const Instruction& loop) const {
-    const Region &head = loop.regions[0], &body = loop.regions[1];
-    if (!differs(head.yields[0]) || stores(head) || stores(body)) return false;
-    // What is computed from the number of the turn alone.
-    std::vector<bool> of_turn(function_.values.size());
-    for (std::size_t k = 0; k < body.params.size(); ++k)
-      of_turn[body.params[k]] =
-          body.yields[k] != body.params[k] && adds(body, body.yields[k], body.params[k]);
-    follow(body, of_turn);
-    for (std::size_t k = 0; k < loop.results.size(); ++k)
-      if (used_[loop.results[k]] &&
-          (of_turn[body.params[k]] || ends_as(body, body.yields[k], of_turn)))
-        return false;
-    return true;
-  }
-
-  void follow(const Region& region, std::vector<bool>& of_turn) const {
-    for (const Instruction& in : region.body) {
-      for (const Region& inner : in.regions) follow(inner, of_turn);
-      if (!in.regions.empty() || in.results.size() != 1) continue;
-      const auto& from = in.operands;
-      of_turn[in.result()] =
-          std::ranges::any_of(from, [&](Value value) { return of_turn[value]; }) &&
-          std::ranges::all_of(from, [&](Value value) { return of_turn[value] || !differs(value); });
-    }
-  }
-
-  // The instruction of a region that gives the value, and which of its results it is.
-  static std::pair<const Instruction*, std::size_t> source(const Region& region, Value value) {
-    for (const Instruction& in : region.body)
-      if (const auto at = std::ranges::find(in.results, value); at != in.results.end())
-        return {&in, static_cast<std::size_t>(at - in.results.begin())};
-    return {nullptr, 0};
-  }
-
-  // Whether a turn makes `before` into `after` by adding a step to it that is the same everywhere,
-  // or leaves it.
-  bool adds(const Region& region, Value after, Value before) const {
-    if (after == before) return true;
-    const auto [in, k] = source(region, after);
-    if (in == nullptr) return false;
-    if (in->op == Op::fadd || in->op == Op::iadd)
-      return (in->operands[0] == before && !differs(in->operands[1])) ||
-             (in->operands[1] == before && !differs(in->operands[0]));
-    return in->op == Op::if_ && std::ranges::all_of(in->regions, [&](const Region& inner) {
-             return adds(inner, inner.yields[k], before);
-           });
-  }
-
-  // Whether a turn may end with a value that is marked.
-  static bool ends_as(const Region& region, Value value, const std::vector<bool>& marked) {
-    if (marked[value]) return true;
-    const auto [in, k] = source(region, value);
-    return in != nullptr && in->op == Op::if_ &&
-           std::ranges::any_of(in->regions, [&](const Region& inner) {
-             return ends_as(inner, inner.yields[k], marked);
-           });
-  }
-
-  const Function& function_;
-  Decisions& found_;
-  std::vector<bool> used_;
-};
-
-// All decisions of a region and of those inside.
-void leave_out(const Region& region, Decisions& decisions) {
-  for (const Instruction& in : region.body) {
-    for (const Value value : in.results)
-      if (value < decisions.forks.size()) decisions.forks[value] = decisions.bends[value] = false;
-    for (const Region& inner : in.regions) leave_out(inner, decisions);
-  }
+// Whether a value is computed from noise, which folds all over the picture: from any function but
+// those of the math library.
+bool is_of_noise(const ir::Module& module, Value value) {
+  passes::Slice slice(module.main());
+  slice.need(value);
+  slice.run();
+  return uses_noise(module, slice, module.main().body);
 }
 
 }  // namespace
-
-void leave_out_searches(const Region& region, Decisions& decisions) {
-  for (const Instruction& in : region.body)
-    for (const Region& inner : in.regions)
-      if (decisions.is_search(in))
-        leave_out(inner, decisions);
-      else
-        leave_out_searches(inner, decisions);
-}
 
 Cut cut_of(Op op) {
   switch (op) {
@@ -173,14 +73,17 @@ Cut cut_of(Op op) {
 }
 
 Decisions find_decisions(ir::Module& module) {
+  const std::size_t own = module.main().values.size();
+  const std::vector<Value> seams = add_seams(module);
   passes::assign_rates(module);
   const Function& main = module.main();
   Decisions found;
   found.forks.resize(main.values.size());
   found.bends.resize(main.values.size());
-  passes::Slice bends(main);
-  // Dither is no edge: it decides anew in each pixel, and a ray marcher with a jittered step does so
-  // all along its way.
+  found.creases.resize(main.values.size());
+  passes::Slice bends(main), lines(main, false);
+  // Dither is no edge: it decides anew in each pixel, and a ray marcher with a jittered step does
+  // so all along its way.
   found.dithered = find_dither(module);
   const auto differs = [&](const Instruction& in) {
     return main.values[in.result()].rate == ir::Rate::sample && !found.dithered[in.result()];
@@ -188,16 +91,24 @@ Decisions find_decisions(ir::Module& module) {
   for_each(main.body, found, [&](const Instruction& in) {
     const Cut cut = cut_of(in.op);
     if (cut == Cut::none || in.op == Op::fabs || !differs(in)) return;
+    // Of what lays a seam open the seam alone is a decision.
+    if (in.result() >= own && std::ranges::find(seams, in.result()) == seams.end()) return;
     found.forks[in.result()] = found.any = true;
     if (cut == Cut::kink) return;
     found.any_jump = true;
-    for (const Value operand : in.operands) bends.need(operand);
+    for (const Value operand : in.operands) bends.need(operand), lines.need(operand);
   });
   bends.run();
+  lines.run();
   for_each(main.body, found, [&](const Instruction& in) {
-    if (in.op == Op::fabs && differs(in) && bends[in.result()]) found.bends[in.result()] = true;
+    const Cut cut = cut_of(in.op);
+    if (cut == Cut::none || cut == Cut::compare || !differs(in)) return;
+    if (in.op == Op::fabs) found.bends[in.result()] = bends[in.result()];
+    const bool may_crease = in.op == Op::fabs || cut != Cut::kink;
+    found.creases[in.result()] =
+        may_crease && lines[in.result()] && !is_of_noise(module, in.operands[0]);
   });
-  Searches(main, found).find(main.body);
+  find_searches(main, found);
   return found;
 }
 

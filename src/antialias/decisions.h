@@ -24,6 +24,9 @@ Cut cut_of(ir::Op op);
 struct Decisions {
   std::vector<bool> forks;     // jumps, and min and max: a steep clamp is an edge to the eye
   std::vector<bool> bends;     // abs where some jump depends on it: it bends an edge
+  // Of these and of steps, those that a jump is computed from: a line that is thinner than a pixel
+  // may lie on one. None that are made of noise, or that only choose a random number.
+  std::vector<bool> creases;
   std::vector<bool> dithered;  // what depends on chance (dither.h): none of these is an edge
   std::vector<bool> searched;  // the conditions of loops that search
   std::vector<bool> ends;      // the results of these that are used
@@ -37,9 +40,9 @@ struct Decisions {
     return by < dithered.size() && dithered[by];
   }
 
-  // Whether a loop searches, as a ray's march does: it turns differently often from sample to
-  // sample, but nothing that it ends with counts the turns. Ending a turn earlier or later is no
-  // edge then; ending elsewhere is.
+  // Whether a loop searches, as a ray's march does: how often it turns hangs on what its turns hand
+  // on to each other and differs from sample to sample, but nothing that it ends with counts the
+  // turns. Ending a turn earlier or later is no edge then; ending elsewhere is.
   bool is_search(const ir::Instruction& in) const {
     if (in.op != ir::Op::loop) return false;
     const ir::Value by = in.regions[0].yields[0];
@@ -47,10 +50,7 @@ struct Decisions {
   }
 };
 
-// Leaves out the decisions within searches: they are of the way there, not of the end.
-void leave_out_searches(const ir::Region& region, Decisions& decisions);
-
-// Gives the module's values their rates, and finds the decisions.
+// Gives the module's values their rates and lays seams open (seams.h), and finds the decisions.
 Decisions find_decisions(ir::Module& module);
 
 }  // namespace pse::antialias

@@ -5,6 +5,7 @@
 
 #include "antialias/edge_state.h"
 #include "antialias/rotate.h"
+#include "antialias/searches.h"
 #include "passes/deriver.h"
 
 namespace pse::antialias {
@@ -14,6 +15,7 @@ using ir::Instruction;
 using ir::no_value;
 using ir::Op;
 using ir::Value;
+using passes::Emit;
 using passes::InputSlopes;
 using passes::Slopes;
 
@@ -83,11 +85,30 @@ std::vector<passes::SlopesOfInput> slopes_of_inputs(const ir::Module& module,
   return inputs;
 }
 
+// Quotients by what is 0 for the frame, as of a smoothstep without width, become steep instead of
+// infinite: an edge's place is the same, and it has a slope.
+void widen_steps(ir::Function& function, ir::Region& region) {
+  constexpr float least = 1e-12f;
+  std::vector<Instruction> out;
+  for (Instruction& in : region.body) {
+    for (ir::Region& inner : in.regions) widen_steps(function, inner);
+    if (in.op == Op::fdiv && function.values[in.operands[1]].rate != ir::Rate::sample) {
+      const Emit emit(function, out);
+      const Value by = in.operands[1];
+      const Value is_zero = emit(Op::feq, {by, emit.number(0)});
+      in.operands[1] = emit.choose(is_zero, emit.number(least), by);
+    }
+    out.push_back(std::move(in));
+  }
+  region.body = std::move(out);
+}
+
 }  // namespace
 
 void derive_edges(ir::Module& module, const Decisions& found, const InputChanges& changes) {
   Decisions decisions = found;
   leave_out_searches(module.main().body, decisions);
+  widen_steps(module.main(), module.main().body);
   // Loops' heads are copied behind and into the loops, so that the edges that they decide count.
   rotate_loops(module.main(), decisions);
   EdgeWatcher watcher(decisions);

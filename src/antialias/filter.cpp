@@ -111,6 +111,26 @@ float Filter::reach() const {
   return kind_ == FilterKind::box ? 0.70710678f * scale_ : reach(1, 0);
 }
 
+float Filter::variance() const {
+  const auto of_unit = [&]() -> float {
+    switch (kind_) {
+      case FilterKind::cubic:
+        return 1.0f / 20;
+      case FilterKind::box:
+        return 1.0f / 12;
+      case FilterKind::disc:
+        return 1.0f / 4;
+      case FilterKind::cone:
+        return 3.0f / 20;
+      case FilterKind::paraboloid:
+        return 1.0f / 6;
+      default:
+        return deviation * deviation;
+    }
+  };
+  return of_unit() * scale_ * scale_;
+}
+
 float Filter::share(float distance, float nx, float ny) const {
   const float reach_here = reach(nx, ny), d = distance / scale_;
   if (distance <= -reach_here) return 0;

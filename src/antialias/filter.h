@@ -31,6 +31,9 @@ class Filter {
   float reach(float nx, float ny) const;
   float reach() const;  // in any direction
 
+  // Of a place under the kernel, along any direction; in pixels squared.
+  float variance() const;
+
   // The share on the side of a straight edge that the normal (nx, ny) points to, where the centre
   // is d pixels on that side; 0 to 1, exact. Of the chapter's kernel 0 for d < -1/2, 1 for d > 1/2,
   // else 3 (d + 1/2)^2 - 2 (d + 1/2)^3.

@@ -64,6 +64,12 @@ template <class V>
 [[gnu::always_inline]] inline V smaller(V a, V b) {
   return a < b ? a : b;
 }
+template <class V>
+[[gnu::always_inline]] inline V square_root(V values) {
+  for (std::size_t lane = 0; lane < lanes_of<V>; ++lane)
+    values[lane] = __builtin_sqrtf(values[lane]);
+  return values;
+}
 // `low` to `high`; NaN stays.
 template <class V>
 [[gnu::always_inline]] inline V clamped(V value, float low, float high) {

@@ -16,6 +16,9 @@ namespace {
 // texture's own detail.
 constexpr float least_step = 0.01f;
 
+// A picture that bends by more between three samples in a row is changed by its mean over a pixel.
+constexpr float least_bend = 0.08f;
+
 // Searches end in the same place where their ends differ by less.
 constexpr float least_end = 0.05f;
 
@@ -31,15 +34,17 @@ template <class V>
 struct Jumps {
   AnswersOf<V> ahead, back;
 };
+// Where both neighbours go other ways (`alone`), neither tells a slope.
 template <class V>
-[[gnu::always_inline]] inline Jumps<V> jumps(V here, V ahead, V back, V least) {
+[[gnu::always_inline]] inline Jumps<V> jumps(V here, V ahead, V back, V least,
+                                             AnswersOf<V> alone) {
   using Answers = AnswersOf<V>;
   const V to_a = ahead - here, to_b = back - here;
   // The neighbour on the other side tells the slope, and so where this one would be without a jump.
   const V beyond = size(to_a + to_b), up = size(to_a), down = size(to_b);
   const Answers same_a = bits(ahead) == bits(here), same_b = bits(back) == bits(here);
-  return {~((up <= least) | (beyond <= larger(down, least)) | same_a),
-          ~((down <= least) | (beyond <= larger(up, least)) | same_b)};
+  return {~((up <= least) | (~alone & (beyond <= larger(down, least))) | same_a),
+          ~((down <= least) | (~alone & (beyond <= larger(up, least))) | same_b)};
 }
 
 // Looks at all pixels whose columns and rows are within `reach`, `count` at once.
@@ -49,7 +54,7 @@ class Search {
   using Answers = AnswersOf<Values>;
   // What is seen of so many pixels.
   struct Seen {
-    Answers edge{}, silhouette{}, narrow{}, untold{};
+    Answers edge{}, silhouette{}, narrow{}, hidden{}, untold{};
   };
 
  public:
@@ -77,16 +82,16 @@ class Search {
       for (std::ptrdiff_t i = 0; i < width; i += at_once) {
         if (!any(load<Answers>(changes + i))) continue;
         const Seen seen = look(first + i);
-        std::uint32_t wanted = mask_of(seen.edge | seen.narrow);
+        std::uint32_t wanted = mask_of(seen.edge | seen.narrow | seen.hidden);
         if (width - i < at_once) wanted &= (1u << (width - i)) - 1;
         if (wanted == 0) continue;
-        const std::uint32_t edge = mask_of(seen.edge), untold = mask_of(seen.untold),
-                            silhouette = mask_of(seen.silhouette);
+        const std::uint32_t edge = mask_of(seen.edge), untold = mask_of(seen.untold & seen.edge),
+                            hidden = mask_of(seen.hidden), silhouette = mask_of(seen.silhouette);
         for (; wanted != 0; wanted &= wanted - 1) {
           const auto k = __builtin_ctz(wanted);
           const auto has = [&](std::uint32_t mask) { return (mask >> k & 1) != 0; };
           *next++ = {tile_.rect.x0 + static_cast<int>(i) + k, y, has(silhouette), !has(edge),
-                     has(untold)};
+                     has(hidden), has(untold)};
         }
       }
     }
@@ -133,10 +138,14 @@ class Search {
   // Values pixels in a row; what is said of those behind the row's end has no meaning.
   [[gnu::always_inline]] Seen look(std::ptrdiff_t here) const {
     Seen seen = look_at_paths(here);
-    if (!any(seen.edge)) return seen;
+    if (!any(seen.edge)) {
+      seen.hidden &= ~seen.narrow;
+      return seen;
+    }
     seen.edge = Answers{};
     for (const std::ptrdiff_t step : steps_) look_along(seen, here, step);
     seen.narrow &= ~seen.edge;
+    seen.hidden &= ~(seen.edge | seen.narrow);
     if (any(seen.edge)) seen.untold |= is_crowded(here);
     return seen;
   }
@@ -145,8 +154,10 @@ class Search {
   // through a program end in the same place.
   [[gnu::always_inline]] Seen look_at_paths(std::ptrdiff_t here) const {
     Seen seen;
-    for (const std::ptrdiff_t step : {std::ptrdiff_t{1}, width_})
-      seen.narrow |= leap(here, here + step) | leap(here, here - step);
+    for (const std::ptrdiff_t step : {std::ptrdiff_t{1}, width_}) {
+      see_leap(seen, here, here + step);
+      see_leap(seen, here, here - step);
+    }
     for (std::size_t o = 0; o < tile_.outputs; ++o) {
       const float* at = tile_.planes[o] + here;
       const Values value = load<Values>(at), least = least_step_from(value);
@@ -160,14 +171,21 @@ class Search {
     return seen;
   }
 
-  // Whether more than one decision falls differently (path.cpp).
-  [[gnu::always_inline]] Answers leap(std::ptrdiff_t here, std::ptrdiff_t there) const {
+  // Whether more than one decision falls differently (path.cpp): narrow; or a crease: hidden.
+  [[gnu::always_inline]] void see_leap(Seen& seen, std::ptrdiff_t here,
+                                       std::ptrdiff_t there) const {
     const Values a = load<Values>(path_ + here), b = load<Values>(path_ + there);
-    const Answers apart = (whole(a) - whole(b)) & ((1 << bits_of_jumps) - 1), steps = apart & 7;
-    return (apart != 0) & (steps != 1) & (steps != 7);
+    const Answers apart = (whole(a) - whole(b)) & ((1 << bits_of_jumps) - 1);
+    constexpr int most = one_crease / 2;
+    const Answers steps = ((apart + most) & (one_crease - 1)) - most;
+    const Answers creases = (apart - steps) & ((1 << bits_of_counts) - 1);
+    seen.narrow |= (steps < -1) | (steps > 1) | ((apart != 0) & (steps == 0) & (creases == 0));
+    seen.hidden |= creases != 0;
   }
 
-  // Whether too few of the eight pixels around go the same way for one or two edges to part them.
+  // Whether too few of the eight pixels around go the same way for one or two edges to part them,
+  // and these are not parted by one or two either: a pixel may have a way of its own because its
+  // middle is on an edge.
   [[gnu::always_inline]] Answers is_crowded(std::ptrdiff_t here) const {
     constexpr int least_alike = 2;
     const Answers way = load<Answers>(path_ + here);
@@ -175,7 +193,16 @@ class Search {
     for (const std::ptrdiff_t step : {std::ptrdiff_t{1}, width_ - 1, width_, width_ + 1})
       alike +=
           (load<Answers>(path_ + here + step) == way) + (load<Answers>(path_ + here - step) == way);
-    return alike > -least_alike;
+    const std::ptrdiff_t ring[] = {1,  1 + width_,  width_,  width_ - 1,
+                                   -1, -1 - width_, -width_, 1 - width_};
+    Answers turns{};
+    Answers last = load<Answers>(path_ + here + ring[7]);
+    for (const std::ptrdiff_t step : ring) {
+      const Answers next = load<Answers>(path_ + here + step);
+      turns += next != last;
+      last = next;
+    }
+    return (alike > -least_alike) & ((turns == 0) | (turns < -4));
   }
 
   // At the two neighbours `step` before and behind each.
@@ -190,18 +217,20 @@ class Search {
     Jumps<Values> ends{};
     if (ends_ != nullptr) {
       ends = jumps(load<Values>(ends_ + here), load<Values>(ends_ + here + step),
-                   load<Values>(ends_ + here - step), Values{} + least_end);
+                   load<Values>(ends_ + here - step), Values{} + least_end, Answers{});
       ahead |= ends.ahead, back |= ends.back;
     }
+    const Answers alone = ahead & back;
     Answers jumps_ahead{}, jumps_back{};
     if (!any(ahead | back)) return;
     for (std::size_t o = 0; o < tile_.outputs; ++o) {
       const float* at = tile_.planes[o] + here;
       const Values value = load<Values>(at);
-      const Jumps<Values> found =
-          jumps(value, load<Values>(at + step), load<Values>(at - step), least_step_from(value));
+      const Values next = load<Values>(at + step), last = load<Values>(at - step);
+      const Jumps<Values> found = jumps(value, next, last, least_step_from(value), alone);
       jumps_ahead |= ahead & found.ahead;
       jumps_back |= back & found.back;
+      seen.edge |= (ahead | back) & (size((next - value) + (last - value)) > least_bend);
     }
     seen.edge |= jumps_ahead | jumps_back;
     seen.untold |= (jumps_ahead & ends.ahead) | (jumps_back & ends.back);

@@ -1,7 +1,7 @@
 // The path is a sum of a random number for each outcome, so order does not matter between
 // decisions; every turn of a loop multiplies what it adds to. Numbers of jumps are 1 more than a
-// multiple of 8, so paths also count: one step at one jump changes them by 1 modulo 8. Numbers of
-// bends leave the lower bits as they are.
+// multiple of 8, so paths also count: one step at one jump changes them by 1 modulo 8. The next
+// three bits count those of creases, and numbers of bends leave the lower bits as they are.
 //
 // A loop that searches, a ray's march above all, turns differently often at every pixel and yet
 // ends in the same place: its turns are no ways of their own. Its last turn tells what it has met,
@@ -53,7 +53,8 @@ class Paths {
       const Instruction& written = out.back();
       const bool jumps = written.results.size() == 1 &&
                          written.result() < decisions_.forks.size() &&
-                         decisions_.forks[written.result()];
+                         (decisions_.forks[written.result()] ||
+                          is_fold(written.op, written.result()));
       if (searches && way.ends != no_value)
         way.ends = with_ends(Emit(function_, out), std::vector(written.results), way.ends);
       else if (jumps)
@@ -66,18 +67,29 @@ class Paths {
  private:
   static constexpr std::array parts = {&Way::path, &Way::ends};
 
-  // A random number, 1 modulo 8.
+  // A random number, 1 modulo 64.
   std::int32_t next_factor() {
     state_ += 0x9e3779b9u;
     std::uint32_t h = state_;
     h = (h ^ (h >> 16)) * 0x85ebca6bu;
     h = (h ^ (h >> 13)) * 0xc2b2ae35u;
-    return static_cast<std::int32_t>(((h ^ (h >> 16)) & ~7u) | 1u);
+    return static_cast<std::int32_t>(((h ^ (h >> 16)) & ~63u) | 1u);
+  }
+
+  // A bend that is a crease.
+  bool is_fold(Op op, Value result) const {
+    return cut_of(op) == Cut::kink && decisions_.creases[result];
   }
 
   Value outcome(const Emit& emit, const Instruction& in, Value path) {
     const Cut cut = cut_of(in.op);
-    const std::int32_t number = next_factor();
+    const bool is_crease = decisions_.creases[in.result()];
+    const std::int32_t number = next_factor() + (is_crease ? one_crease : 0);
+    if (is_crease && cut == Cut::kink) {
+      const Value below = emit.less(in.operands[0], emit.number(0));
+      const Value fold = emit.integer(number - 1);
+      return emit(Op::iadd, {path, emit.choose(below, fold, emit.integer(0))});
+    }
     const Value factor = emit.integer(cut == Cut::kink ? number << bits_of_jumps : number);
     if (cut == Cut::compare || cut == Cut::kink) {
       const Value is_first =

@@ -11,6 +11,8 @@ inline constexpr const char* path_name = "$path";
 inline constexpr const char* ends_name = "$ends";
 // The lower bits of a path, which tell of jumps alone.
 inline constexpr int bits_of_jumps = 10;
+// Of these the three lowest count jumps, the next three those of creases.
+inline constexpr int one_crease = 8, bits_of_counts = 6;
 
 // Adds the output "$path" to a module fresh from the lowering: a whole number from 0 to 2^24 - 1
 // that hashes the outcomes of all jumps and the turns of all loops; of loops that search, the

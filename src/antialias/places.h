@@ -47,6 +47,7 @@ struct Work {
   Found found;
   Crossings crossings;
   std::vector<Unclear> unclear;
+  std::vector<Pixel> between;  // between the bends of a steep ramp
   Places places;    // where the next run is to be
   Results results;  // of the last run
   Scratch scratch;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "antialias/derive.h"
+#include "antialias/path.h"
 #include "antialias/steps.h"
 
 namespace pse::antialias {
@@ -19,10 +20,16 @@ Line line_of(const Results& edges, std::size_t which, std::size_t i) {
 
 // Where two neighbours differ an edge lies between them, so within this of either.
 constexpr float farthest_explained = 1.7f;
-// A pixel's middle is on an edge as near as this.
-constexpr float on_edge = 0.01f;
+// A pixel's middle is on an edge as near as this; and nearer, it may have a way of its own, of
+// those that differ in the last bit.
+constexpr float on_edge = 0.01f, within_edge = 0.0005f;
 // A share so near to 0 or 1 leaves the pixel as it is.
 constexpr float least_share = 0.001f;
+
+// Whether the pixel has the lines on opposite sides.
+bool is_between(const Line& a, const Line& b) {
+  return a.distance * b.distance * (a.nx * b.nx + a.ny * b.ny) < 0;
+}
 
 }  // namespace
 
@@ -38,12 +45,26 @@ void Refiner::find_crossings(CrossingLists& c, Work& work, RunStatus& status) co
   steps().see_nearness(edges.lists(), c.count, reach, farthest, nearness);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < c.count; ++i) {
-    if (nearness[i] == Nearness::unclear)
-      work.unclear.push_back({{c.x[i], c.y[i]}, {line_of(edges, 0, i), line_of(edges, 1, i)}});
+    bool is_kept = nearness[i] == Nearness::one_edge;
+    const float nearest = std::abs(edges[0][i]);
+    const bool is_second_near = std::abs(edges[3][i]) < farthest;
+    if (c.hidden[i] != 0) {
+      // The other edge may be seen from beyond the crease only.
+      is_kept = nearest < reach && !is_second_near;
+      if (nearest < reach && is_second_near)
+        work.unclear.push_back({c.pixel(i), {line_of(edges, 0, i), line_of(edges, 1, i)}});
+    } else if (nearness[i] == Nearness::unclear) {
+      work.unclear.push_back({c.pixel(i), {line_of(edges, 0, i), line_of(edges, 1, i)}});
+    } else if (nearest >= reach && is_second_near &&
+               is_between(line_of(edges, 0, i), line_of(edges, 1, i))) {
+      work.between.push_back(c.pixel(i));
+      is_kept = false;
+    }
     // Most are out of reach or not by chance: no branch.
     c.x[kept] = c.x[i], c.y[kept] = c.y[i];
     c.distance[kept] = edges[0][i], c.nx[kept] = edges[1][i], c.ny[kept] = edges[2][i];
-    kept += nearness[i] == Nearness::one_edge;
+    c.hidden[kept] = c.hidden[i];
+    kept += is_kept;
   }
   c.count = kept;
 }
@@ -61,13 +82,14 @@ void Refiner::follow(CrossingLists& c, Work& work, RunStatus& status) const {
 
   std::size_t kept = 0;
   for (std::size_t i = 0; i < c.count; ++i) {
-    if (c.is_one[i] == 0) {
+    const bool is_hidden = c.hidden[i] != 0;
+    if (c.is_one[i] == 0 || (is_hidden && std::abs(c.other[i]) < farthest_explained)) {
       const Line second = line_of(edges, 1, i);
-      work.unclear.push_back({{c.x[i], c.y[i]}, {c.line(i), {c.other[i], second.nx, second.ny}}});
+      work.unclear.push_back({c.pixel(i), {c.line(i), {c.other[i], second.nx, second.ny}}});
     }
     const float share = c.share[i];
     c.move(i, kept);
-    kept += (c.is_one[i] != 0) & (share > least_share) & (share < 1 - least_share);
+    kept += (c.is_one[i] != 0) & !is_hidden & (share > least_share) & (share < 1 - least_share);
   }
   c.count = kept;
 }
@@ -106,7 +128,8 @@ void Refiner::blend(const Tile& tile, const CrossingLists& c, Refined& result, W
     bool on_a = !(c.distance[i] < 0);
     // On which side a pixel lies whose middle is on the edge, rounding decides.
     if (std::abs(c.distance[i]) < on_edge && !(on_a ? is_a : is_b)) on_a = !on_a;
-    const bool one_way = path_a[i] == path_b[i], strange = !(on_a ? is_a : is_b);
+    const bool one_way = path_a[i] == path_b[i];
+    const bool strange = !(on_a ? is_a : is_b) && !(std::abs(c.distance[i]) < within_edge);
     bool doubt = false;
     if (one_way | strange)
       for (std::size_t o = 0; o < outputs_ && !doubt; ++o) {
@@ -126,17 +149,41 @@ void Refiner::blend(const Tile& tile, const CrossingLists& c, Refined& result, W
   result.resize(kept);
 }
 
+// Pixels between the bends of a steep ramp, with no edge under the kernel: the mean of what bends
+// evenly is that of the middle and half of its bend times the kernel's variance.
+void Refiner::smooth(const Tile& tile, const Work& work, Refined& result) const {
+  const float part = options_.filter.variance() / 2;
+  constexpr int jumps = (1 << bits_of_jumps) - 1;
+  for (const Pixel& pixel : work.between) {
+    const std::size_t here = tile.at(pixel.x, pixel.y);
+    const auto row = static_cast<std::size_t>(tile.area.width());
+    const std::array<std::size_t, 4> around = {here - 1, here + 1, here - row, here + row};
+    const auto way = [&](std::size_t at) { return static_cast<int>(tile.path()[at]) & jumps; };
+    const auto goes_along = [&](std::size_t at) { return way(at) == way(here); };
+    if (!std::ranges::all_of(around, goes_along)) continue;
+    result.pixels.push_back(pixel);
+    for (std::size_t o = 0; o < outputs_; ++o) {
+      const float* plane = tile.planes[o];
+      float bend = 0;
+      for (const std::size_t at : around) bend += plane[at] - plane[here];
+      result.values[o].push_back(plane[here] + part * bend);
+    }
+  }
+}
+
 Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts& counts) const {
   const std::span<const Pixel> found = find_edge_pixels(tile, options_.filter, work.found);
   Refined result({}, outputs_);
   if (found.empty()) return result;
   counts.filtered += static_cast<std::int64_t>(found.size());
-  work.unclear.clear();
+  work.unclear.clear(), work.between.clear();
   CrossingLists inner = work.crossings.lists(found.size());
   for (const Pixel& pixel : found) {
+    if (pixel.hidden && edges_ == nullptr) continue;
     inner.x[inner.count] = pixel.x, inner.y[inner.count] = pixel.y;
+    inner.hidden[inner.count] = pixel.hidden ? 1 : 0;
     // The program knows the edges within objects, not those of the objects.
-    if (pixel.silhouette || pixel.narrow || pixel.untold || edges_ == nullptr)
+    if (pixel.silhouette || (pixel.narrow && !pixel.hidden) || pixel.untold || edges_ == nullptr)
       work.unclear.push_back({pixel});
     else
       ++inner.count;
@@ -147,6 +194,7 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
     blend(tile, inner, result, work, status);
   }
   counts.blended += static_cast<std::int64_t>(result.pixels.size());
+  smooth(tile, work, result);
   settle(tile, result, counts, work, status);
   return result;
 }

@@ -68,6 +68,7 @@ class Refiner {
  private:
   void find_crossings(CrossingLists& crossings, Work& work, RunStatus& status) const;
   void follow(CrossingLists& crossings, Work& work, RunStatus& status) const;
+  void smooth(const Tile& tile, const Work& work, Refined& result) const;
   void settle_shares(const CrossingLists& crossings) const;
   void blend(const Tile& tile, const CrossingLists& crossings, Refined& result, Work& work,
              RunStatus& status) const;

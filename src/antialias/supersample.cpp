@@ -180,13 +180,15 @@ void Refiner::settle(const Tile& tile, Refined& result, Counts& counts, Work& wo
         sum[o] += work.sums[of];
         Range& range = ranges[i * outputs_ + o];
         range = first == 0 ? seen : range.with(seen);
+        const float own = tile.planes[o][tile.at(pixel.x, pixel.y)];
         if (last > first_look) {
           uneven = uneven || is_uneven(range, last);
+          more = more || (pixel.hidden && exceeds(range, {own, own}));
           continue;
         }
         // The first few may have missed what a neighbour shows.
         const Range around = range_around(tile, pixel, o);
-        more = more || exceeds(range, around);
+        more = more || exceeds(range, pixel.hidden ? Range{own, own} : around);
         uneven = uneven || is_uneven(range.with(around), last);
       }
       if (!more) return;

@@ -32,6 +32,9 @@ struct Pixel {
   // Nothing jumps, but more than one decision falls differently a pixel further: there may be
   // something in between that no sample has met.
   bool narrow = false;
+  // Narrow at most: a crease lies in between. Only where another edge is near there may be
+  // something.
+  bool hidden = false;
   // The program does not tell where the edges are: a search ends elsewhere, or hardly a neighbour
   // goes the same way.
   bool untold = false;

@@ -43,7 +43,8 @@ void Slice::visit(const Instruction& in) {
   } else {
     bool wanted = false;
     for (const Value result : in.results) wanted = wanted || needed_[result];
-    if (!wanted) return;
+    // A number made of whole ones is a count or a hash, as good as a call's result.
+    if (!wanted || (!through_calls_ && (in.op == Op::call || in.op == Op::i2f))) return;
     for (const Value operand : in.operands) mark(operand);
     if (in.op == Op::array_load && !arrays_[static_cast<std::size_t>(in.imm)])
       arrays_[static_cast<std::size_t>(in.imm)] = changed_ = true;

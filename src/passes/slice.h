@@ -10,8 +10,12 @@ namespace pse::passes {
 
 class Slice {
  public:
-  explicit Slice(const ir::Function& function)
-      : function_(function), needed_(function.values.size()), arrays_(function.arrays.size()) {}
+  // Without calls, what functions are called with is left out.
+  explicit Slice(const ir::Function& function, bool through_calls = true)
+      : function_(function),
+        needed_(function.values.size()),
+        arrays_(function.arrays.size()),
+        through_calls_(through_calls) {}
 
   void need(ir::Value value) { needed_[value] = true; }
   // Until nothing changes; a loop needs a round for each value that its turns hand on.
@@ -28,6 +32,7 @@ class Slice {
   const ir::Function& function_;
   std::vector<bool> needed_;
   std::vector<bool> arrays_;
+  bool through_calls_;
   bool changed_ = false;
 };
 

@@ -74,6 +74,20 @@ TEST(Filter, SharesAndMomentsAreThoseOfItsSamples) {
     }
 }
 
+TEST(Filter, VarianceIsThatOfItsSamples) {
+  for (const FilterKind kind : kinds)
+    for (const float scale : {1.0f, 1.5f}) {
+      const Filter filter(kind, scale);
+      constexpr std::uint32_t count = 1 << 12;
+      double sum = 0;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const auto [x, y] = filter.place(Spread(3, 5)(i)[0], Spread(3, 5)(i)[1]);
+        sum += (x * x + y * y) / 2;
+      }
+      EXPECT_NEAR(filter.variance(), sum / count, 3e-3 * scale * scale) << int(kind);
+    }
+}
+
 TEST(Spread, EveryBoxOfADyadicGridHasOnePoint) {
   const Spread spread(12, -7);
   for (const int columns : {1, 2, 4, 8, 16, 32, 64}) {

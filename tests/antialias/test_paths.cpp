@@ -142,6 +142,17 @@ TEST(Path, ALoopWhoseTurnsAreCountedIsNoSearch) {
   EXPECT_NE(way_at("z = x\nwhile z < 9\n    z *= 1.5\nc = z\n", 2.5f).ends, 0);
 }
 
+// Its turns hand nothing on but whether one of them has met its condition: each is an edge.
+TEST(Path, ALoopThatLeavesAtTheFirstIsNoSearch) {
+  for (const char* text : {"c = 0\nfor i in [1 .. 3]\n    if x > i\n        c = 1\n        break\n",
+                           "function f(t)\n    for i in [1 .. 3]\n        if t > 7 - 2 * i\n"
+                           "            return t\n    return 0\nc = f(x)\n",
+                           "c = 1\nz = x\nwhile z < 1\n    z = 2\n    c = 0\n"}) {
+    EXPECT_EQ(way_at(text, 3.5f).ends, 0) << text;
+    EXPECT_NE(path_at(text, 3.5f), path_at(text, 0.5f)) << text;
+  }
+}
+
 TEST(Path, BendsLeaveTheBitsOfJumps) {
   constexpr int jumps = (1 << bits_of_jumps) - 1;
   const auto bits = [](const char* text, float x) { return int(path_at(text, x)) & jumps; };

@@ -6,6 +6,8 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "antialias/fine.h"
+#include "antialias/path.h"
 #include "antialias/stored.h"
 #include "stream/blocks.h"
 #include "stream/planes.h"
@@ -42,7 +44,10 @@ class Execution {
         options_(options),
         status_(status),
         counts_(counts),
-        tiling_(options.window, options.tile_width, options.tile_height) {}
+        tiling_(options.window, options.tile_width, options.tile_height),
+        paths_end_(programs.shown->module().outputs.size()) {
+    if (paths_end_ > 0 && programs.shown->module().outputs.back().name == fine_name) --paths_end_;
+  }
 
   RunResult run() {
     const auto start = std::chrono::steady_clock::now();
@@ -68,6 +73,9 @@ class Execution {
     stored_ = wanted && host_.stored && programs_.conditions.valid();
     procedural_ = wanted && (anywhere || stored_);
     supersample_ = antialias_.mode == Mode::supersample;
+    const std::size_t fine = procedural_ && anywhere ? find_fine(*quiet.runner) : nowhere;
+    // Without that there is nothing to do where there are no edges.
+    if (fine == nowhere && !programs_.edges.valid()) procedural_ = false;
     apron_ = procedural_ ? apron_of(antialias_.filter) : 0;
 
     std::optional<Refiner> all;
@@ -100,7 +108,8 @@ class Execution {
         run_tile(shown, state, status, scratch, inputs, outputs, around.width(), around.height());
       }
       if (status.failed_check >= 0 || status.cancel) return;
-      Tile tile{tiling_.rect(number), area(number), outputs, programs_.outputs};
+      Tile tile{tiling_.rect(number), area(number), outputs.first(paths_end_), programs_.outputs};
+      if (fine != nowhere) tile.fine = outputs[fine];
       if (id != inputs_of.end())
         tile.ids = inputs[static_cast<std::size_t>(id - inputs_of.begin())];
       if (!supersample_ && !procedural_) return;
@@ -138,6 +147,21 @@ class Execution {
       result.y = rect.y0 + static_cast<int>(end.failed_sample / rect.width());
     }
     return result;
+  }
+
+  // The output that tells where noise is fine; nowhere if there is none, or if it is the same in
+  // all of the picture and not fine.
+  std::size_t find_fine(const PlaceRunner& runner) const {
+    const ir::Module& module = programs_.quiet->module();
+    const std::size_t fine = paths_end_;
+    if (fine == module.outputs.size()) return nowhere;
+    const ir::Value value = module.main().body.yields[fine];
+    if (module.main().values[value].rate == ir::Rate::sample) return fine;
+    Work work;
+    work.places.resize(1);
+    work.places.x[0] = options_.window.x0 + 0.5, work.places.y[0] = options_.window.y0 + 0.5;
+    RunStatus unchecked{.outer = &status_};
+    return runner.run(work, unchecked)[fine][0] > most_move_squared ? fine : nowhere;
   }
 
   // The program with its checks on the tile alone: what is outside of the picture cannot fail.
@@ -261,6 +285,8 @@ class Execution {
   RunStatus& status_;
   Counts& counts_;
   const Tiling tiling_;
+  static constexpr auto nowhere = static_cast<std::size_t>(-1);
+  std::size_t paths_end_;  // outputs before this are the program's own, their path and ends
   int apron_ = 0;
   bool procedural_ = false, supersample_ = false, stored_ = false;
   const Placed* quiet_ = nullptr;

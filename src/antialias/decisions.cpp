@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "antialias/dither.h"
+#include "antialias/fine.h"
 #include "antialias/seams.h"
 #include "antialias/searches.h"
 #include "passes/passes.h"
@@ -72,7 +73,7 @@ Cut cut_of(Op op) {
   }
 }
 
-Decisions find_decisions(ir::Module& module) {
+Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
   const std::size_t own = module.main().values.size();
   const std::vector<Value> seams = add_seams(module);
   passes::assign_rates(module);
@@ -109,6 +110,8 @@ Decisions find_decisions(ir::Module& module) {
         may_crease && lines[in.result()] && !is_of_noise(module, in.operands[0]);
   });
   find_searches(main, found);
+  found.noises = find_noise(module, found, changes);
+  found.any_noise = std::ranges::find(found.noises, true) != found.noises.end();
   return found;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ir/module.h"
+#include "stream/sample_source.h"
 
 namespace pse::antialias {
 
@@ -30,8 +31,10 @@ struct Decisions {
   std::vector<bool> dithered;  // what depends on chance (dither.h): none of these is an edge
   std::vector<bool> searched;  // the conditions of loops that search
   std::vector<bool> ends;      // the results of these that are used
+  std::vector<bool> noises;    // calls of noise that may be finer than a pixel (fine.h)
   bool any = false;            // whether there is a fork
   bool any_jump = false;
+  bool any_noise = false;
 
   // Whether an if or a loop goes its way by chance, and with it all that stands inside.
   bool is_dither(const ir::Instruction& in) const {
@@ -51,6 +54,7 @@ struct Decisions {
 };
 
 // Gives the module's values their rates and lays seams open (seams.h), and finds the decisions.
-Decisions find_decisions(ir::Module& module);
+// `changes`: as in compile_programs().
+Decisions find_decisions(ir::Module& module, const InputChanges& changes = unknown_changes);
 
 }  // namespace pse::antialias

@@ -11,6 +11,7 @@
 #include <array>
 #include <span>
 
+#include "antialias/fine.h"
 #include "passes/emit.h"
 
 namespace pse::antialias {
@@ -28,6 +29,7 @@ using passes::Emit;
 struct Way {
   Value path;
   Value ends;  // the sum of what searches ended with; no_value inside of them
+  Value fine;  // the farthest move of noise; likewise, and where there is none
 };
 
 class Paths {
@@ -51,21 +53,22 @@ class Paths {
         way = turn(in, way);
       out.push_back(std::move(in));
       const Instruction& written = out.back();
-      const bool jumps = written.results.size() == 1 &&
-                         written.result() < decisions_.forks.size() &&
-                         (decisions_.forks[written.result()] ||
-                          is_fold(written.op, written.result()));
+      const bool jumps =
+          written.results.size() == 1 && written.result() < decisions_.forks.size() &&
+          (decisions_.forks[written.result()] || is_fold(written.op, written.result()));
       if (searches && way.ends != no_value)
         way.ends = with_ends(Emit(function_, out), std::vector(written.results), way.ends);
       else if (jumps)
         way.path = outcome(Emit(function_, out), Instruction(written), way.path);
+      else if (way.fine != no_value && is_noise(written))
+        way.fine = with_move(Emit(function_, out), Instruction(written), way.fine);
     }
     region.body = std::move(out);
     return way;
   }
 
  private:
-  static constexpr std::array parts = {&Way::path, &Way::ends};
+  static constexpr std::array parts = {&Way::path, &Way::ends, &Way::fine};
 
   // A random number, 1 modulo 64.
   std::int32_t next_factor() {
@@ -79,6 +82,14 @@ class Paths {
   // A bend that is a crease.
   bool is_fold(Op op, Value result) const {
     return cut_of(op) == Cut::kink && decisions_.creases[result];
+  }
+
+  bool is_noise(const Instruction& in) const {
+    return in.op == Op::call && in.results[0] < decisions_.noises.size() &&
+           decisions_.noises[in.results[0]];
+  }
+  static Value with_move(const Emit& emit, const Instruction& call, Value farthest) {
+    return emit(Op::fmax, {farthest, move_squared(emit, call)});
   }
 
   Value outcome(const Emit& emit, const Instruction& in, Value path) {
@@ -157,7 +168,7 @@ class Paths {
 
   // A loop that searches: every turn's path begins anew.
   Value search(Instruction& in, Value before) {
-    const Value after = walk(in.regions[1], {before, no_value}).path;
+    const Value after = walk(in.regions[1], {before, no_value, no_value}).path;
     if (after == before) return before;
     carry(in, ir::Type::i32);
     return finish(in, before, after);
@@ -222,7 +233,8 @@ void add_path(ir::Module& module, const Decisions& decisions) {
   Function& main = module.main();
   std::vector<Instruction> start;
   const Emit first(main, start);
-  const Way none{first.integer(0), first.number(0)};
+  const Value still = decisions.any_noise ? first.number(0) : no_value;
+  const Way none{first.integer(0), first.number(0), still};
   Paths paths(main, decisions);
   const Way way = paths.walk(main.body, none);
   main.body.body.insert(main.body.body.begin(), std::make_move_iterator(start.begin()),
@@ -233,9 +245,13 @@ void add_path(ir::Module& module, const Decisions& decisions) {
   const Value low = emit(Op::ishr, {high, emit.integer(8)});
   main.body.yields.push_back(emit(Op::i2f, {low}));
   module.outputs.push_back({path_name});
-  if (!paths.has_searches()) return;
-  main.body.yields.push_back(way.ends);
-  module.outputs.push_back({ends_name});
+  if (paths.has_searches()) {
+    main.body.yields.push_back(way.ends);
+    module.outputs.push_back({ends_name});
+  }
+  if (!decisions.any_noise) return;
+  main.body.yields.push_back(way.fine);
+  module.outputs.push_back({fine_name});
 }
 
 void remove_checks(ir::Module& module) {

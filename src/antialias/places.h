@@ -48,6 +48,7 @@ struct Work {
   Crossings crossings;
   std::vector<Unclear> unclear;
   std::vector<Pixel> between;  // between the bends of a steep ramp
+  std::vector<Pixel> fine;     // with noise that is finer than they are
   Places places;    // where the next run is to be
   Results results;  // of the last run
   Scratch scratch;

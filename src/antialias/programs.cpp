@@ -41,9 +41,13 @@ std::expected<Programs, std::string> compile_programs(CompiledFront front,
   CompiledFront copy = front;
   copy.calls.clear();
   passes::remove_dead(copy.module);
-  const Decisions decisions = find_decisions(copy.module);
-  if (!decisions.any) return finish(std::move(front));
+  const Decisions decisions = find_decisions(copy.module, changes);
+  if (!decisions.any && !decisions.any_noise) return finish(std::move(front));
   programs.has_paths = true;
+  if (!decisions.any) {
+    add_path(copy.module, decisions);
+    return finish(std::move(copy));
+  }
   programs.conditions = std::async(std::launch::deferred, [open = copy, plain]() mutable {
                           const std::size_t own = open.module.outputs.size();
                           remove_checks(open.module);

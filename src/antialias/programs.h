@@ -28,8 +28,8 @@ struct Programs {
   // The same without checks: for samples at places that the user has not asked for.
   std::shared_ptr<const Program> quiet;
   std::size_t outputs = 0;
-  // Its edges (antialias/derive.h), compiled meanwhile; not valid where the program has no jumps:
-  // paths then tell objects apart.
+  // Its edges (antialias/derive.h), compiled meanwhile; not valid where the program has no
+  // decisions, but noise that may be fine.
   using Result = std::expected<std::shared_ptr<const Program>, std::string>;
   std::shared_future<Result> edges;
   // The program with its conditions laid open (antialias/force.h), compiled when it is asked for.

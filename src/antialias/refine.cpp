@@ -173,12 +173,25 @@ void Refiner::smooth(const Tile& tile, const Work& work, Refined& result) const 
 
 Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts& counts) const {
   const std::span<const Pixel> found = find_edge_pixels(tile, options_.filter, work.found);
+  find_fine_pixels(tile, work.fine);
   Refined result({}, outputs_);
-  if (found.empty()) return result;
-  counts.filtered += static_cast<std::int64_t>(found.size());
+  if (found.empty() && work.fine.empty()) return result;
   work.unclear.clear(), work.between.clear();
+  for (const Pixel& pixel : work.fine) work.unclear.push_back({pixel});
+  counts.filtered += static_cast<std::int64_t>(work.fine.size());
   CrossingLists inner = work.crossings.lists(found.size());
+  const auto is_before = [](const Pixel& a, const Pixel& b) {
+    return a.y != b.y ? a.y < b.y : a.x < b.x;
+  };
+  std::size_t fine = 0;
   for (const Pixel& pixel : found) {
+    // What edges part is no clearer where it is fine itself.
+    while (fine < work.fine.size() && is_before(work.fine[fine], pixel)) ++fine;
+    if (fine < work.fine.size() && !is_before(pixel, work.fine[fine])) {
+      work.unclear[fine].pixel.silhouette = pixel.silhouette;
+      continue;
+    }
+    ++counts.filtered;
     if (pixel.hidden && edges_ == nullptr) continue;
     inner.x[inner.count] = pixel.x, inner.y[inner.count] = pixel.y;
     inner.hidden[inner.count] = pixel.hidden ? 1 : 0;

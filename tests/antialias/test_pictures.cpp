@@ -116,6 +116,10 @@ const std::vector<std::pair<const char*, const char*>> programs = {
     // Where hardly a neighbour goes the same way, two edges do not tell of the others.
     {"crowd", "h = 0.95 - y\nc = 0.5\nif h > 0\n    d = 3 / h\n"
               "    c = mod(floor(x * d) + floor(1.3 * d), 2)\n"},
+    // Finer than a pixel: everywhere, towards a horizon, and where there are edges.
+    {"fine", "c = Noise(80 * x, 80 * y)\n"},
+    {"far", "c = 0.5\nif y < 0\n    z = 0.5 / -y\n    c += Noise(4 * x * z, 4 * z)\n"},
+    {"grain", "c = 0.5\nif length([x y]) < 0.6\n    c = 0.2\nc += 0.2 * Noise(90 * x, 90 * y)\n"},
     {"pow", "c = select(pow(abs(x), 2.5) + pow(abs(y), 2.5) < 0.5, 1, 0)\n"},
 };
 

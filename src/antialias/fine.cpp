@@ -1,0 +1,137 @@
+// Which calls are looked at, and what is asked of them.
+#include "antialias/fine.h"
+
+#include <algorithm>
+
+#include "antialias/decisions.h"
+#include "passes/slice.h"
+#include "passes/slope_rules.h"
+
+namespace pse::antialias {
+namespace {
+
+using ir::Function;
+using ir::Instruction;
+using ir::no_value;
+using ir::Op;
+using ir::Region;
+using ir::Value;
+using passes::Slice;
+
+class Noises {
+ public:
+  Noises(const ir::Module& module, const Decisions& decisions, const InputChanges& changes)
+      : module_(module),
+        main_(module.main()),
+        decisions_(decisions),
+        changes_(changes),
+        found_(main_.values.size()) {}
+
+  std::vector<bool> find() && {
+    walk(main_.body);
+    return std::move(found_);
+  }
+
+ private:
+  void walk(const Region& region) {
+    for (const Instruction& in : region.body) {
+      if (in.op == Op::call && is_noise(in)) found_[in.results[0]] = is_cheap(in);
+      if (decisions_.is_dither(in) || (in.op == Op::loop && !has_known_turns(in))) continue;
+      for (const Region& inner : in.regions) walk(inner);
+    }
+  }
+
+  bool is_noise(const Instruction& call) const {
+    return module_.functions[static_cast<std::size_t>(call.imm)].name.find("noise") !=
+           std::string::npos;
+  }
+
+  // Whether the loop turns equally often everywhere, however large a pixel is.
+  bool has_known_turns(const Instruction& loop) const {
+    const Value by = loop.regions[0].yields[0];
+    if (main_.values[by].rate == ir::Rate::sample) return false;
+    Slice slice(main_);
+    slice.need(by);
+    slice.run();
+    return none_of(main_.body, slice, [&](const Instruction& in) {
+      if (in.op == Op::slope) return true;
+      if (in.op != Op::input) return false;
+      const std::string& name = input(in).name;
+      return name == "pixelsize" || name == "pixel_freq";
+    });
+  }
+
+  // Whether the slopes of all that the call gets are found with little work.
+  bool is_cheap(const Instruction& call) const {
+    Slice slice(main_);
+    for (const Value operand : call.operands)
+      if (main_.values[operand].rate == ir::Rate::sample) slice.need(operand);
+    slice.run();
+    const auto is_place = [&](const Instruction& in) {
+      return in.op == Op::input && input(in).rate == ir::Rate::sample;
+    };
+    return !none_of(main_.body, slice, is_place) &&
+           none_of(main_.body, slice, [&](const Instruction& in) {
+             switch (in.op) {
+               case Op::call:
+                 return !passes::has_partials(
+                     module_.functions[static_cast<std::size_t>(in.imm)].name);
+               case Op::loop:
+                 return main_.values[in.regions[0].yields[0]].rate == ir::Rate::sample;
+               case Op::input:
+                 return is_place(in) && moves_unevenly(input(in).name);
+               default:
+                 return in.op == Op::slope || in.op == Op::external || in.op == Op::array_load;
+             }
+           });
+  }
+
+  const ir::Input& input(const Instruction& in) const {
+    return module_.inputs[static_cast<std::size_t>(in.imm)];
+  }
+  bool moves_unevenly(const std::string& name) const {
+    const auto [along_x, along_y] = changes_(name);
+    return along_x == Change::any || along_y == Change::any;
+  }
+
+  template <class Is>
+  static bool none_of(const Region& region, const Slice& slice, const Is& is) {
+    return std::ranges::none_of(region.body, [&](const Instruction& in) {
+      const bool is_needed =
+          std::ranges::any_of(in.results, [&](Value result) { return slice[result]; });
+      return (is_needed && is(in)) || !std::ranges::all_of(in.regions, [&](const Region& inner) {
+               return none_of(inner, slice, is);
+             });
+    });
+  }
+
+  const ir::Module& module_;
+  const Function& main_;
+  const Decisions& decisions_;
+  const InputChanges& changes_;
+  std::vector<bool> found_;
+};
+
+}  // namespace
+
+std::vector<bool> find_noise(const ir::Module& module, const Decisions& decisions,
+                             const InputChanges& changes) {
+  return Noises(module, decisions, changes).find();
+}
+
+Value move_squared(const passes::Emit& emit, const Instruction& call) {
+  Value along[2];
+  for (std::int32_t k = 0; k < 2; ++k) {
+    Value sum = emit.number(0);
+    for (const Value operand : call.operands) {
+      const ir::ValueInfo& value = emit.function().values[operand];
+      if (value.type != ir::Type::f32 || value.rate != ir::Rate::sample) continue;
+      const Value slope = emit(Op::slope, {operand}, k);
+      sum = emit(Op::fma, {slope, slope, sum});
+    }
+    along[k] = sum;
+  }
+  return emit(Op::fmax, {along[0], along[1]});
+}
+
+}  // namespace pse::antialias

@@ -1,0 +1,81 @@
+// Noise that is finer than a pixel is sampled, wherever it stands, and noise that is not is left
+// alone. In these pictures of 32 x 32 pixels x and y change by 1/16 from pixel to pixel, so that
+// the place of Noise(k * x) moves by k / 16, and noise is fine from k = 16 sqrt(0.2) = 7.16 on.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "picture.h"
+
+namespace pse::antialias::test {
+namespace {
+
+constexpr int pixels = 32 * 32;
+
+std::int64_t sampled(const std::string& program) {
+  const Picture picture = render(program, {.interpret = true, .antialias = procedural()});
+  EXPECT_EQ(picture.counts.blended, 0) << program;
+  return picture.counts.supersampled;
+}
+
+TEST(Fine, FromHalfACellPerPixelOn) {
+  constexpr double most = 0.9 * pixels;
+  EXPECT_EQ(sampled("c = Noise(7.1 * x, 0.3)\n"), 0);
+  EXPECT_GT(sampled("c = Noise(7.2 * x, 0.3)\n"), most);
+  EXPECT_EQ(sampled("c = Noise(0.3, 7.1 * y)\n"), 0);
+  EXPECT_GT(sampled("c = Noise(0.3, 7.2 * y)\n"), most);
+  // Along a row both coordinates change, by sqrt(2) k / 16 together.
+  EXPECT_EQ(sampled("c = Noise(5 * (x + y), 5 * (x - y))\n"), 0);
+  EXPECT_GT(sampled("c = Noise(5.1 * (x + y), 5.1 * (x - y))\n"), most);
+}
+
+TEST(Fine, OfEveryKindAndFromEveryPlace) {
+  for (const char* program :
+       {"c = unoise(40 * x, 40 * y)\n", "c = noise(40 * point)\n", "c = vnoise(40 * point).y\n",
+        "c = noise1985(40 * x, 40 * y)\n", "c = noise1989(40 * x, 40 * y)\n",
+        "c = book_noise(40 * point)\n", "c = Dnoise([40 * x 40 * y]).x\n",
+        "c = pnoise(40 * x, 40 * y, 64)\n", "c = Noise(40 * x, 40 * y, seed = 3)\n",
+        "function f(p)\n    return Noise(8 * p)\nc = f([5 * x 5 * y])\n",
+        "c = 0\nfor i in [1 .. 6]\n    c += Noise(2 ^ i * x, 2 ^ i * y)\n",
+        "c = 0\nf = 1\nq = [x y]\nfor i in [1 .. 40]\n    c += Noise(f * q) / 8\n    f += 1\n",
+        "c = fbm(10 * [x y], 4)\n"})
+    EXPECT_GT(sampled(program), 0.85 * pixels) << program;
+}
+
+TEST(Fine, NotWhatIsNotSeenOrFadesByItself) {
+  for (const char* program :
+       {"c = turbulence(10 * [x y])\n", "c = fbm(10 * [x y])\n",
+        "c = 0.5 + 0.002 * Noise(40 * x, 40 * y)\n", "c = Noise(3 * time, 0.2)\n",
+        "c = 0\nf = 1\nwhile f < 1 / pixelsize\n    c += abs(Noise(f * x, f * y)) / f\n    f *= "
+        "2\n"})
+    EXPECT_EQ(sampled(program), 0) << program;
+}
+
+TEST(Fine, WhereTheSlopeSaysSo) {
+  // 16 |x| / 16 cells per pixel, so beyond |x| = 0.447 alone.
+  const std::string program = "c = Noise(8 * x * x, 0.3 + y)\n";
+  const Picture plainly = render(program, {.antialias = plain()});
+  const Picture ours = render(program, {.antialias = procedural()});
+  int changed = 0, beyond = 0;
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x) {
+      const double place = std::abs((x + 0.5) / 16 - 1);
+      const bool is_fine = place * place > 0.2;
+      beyond += is_fine ? 1 : 0;
+      const bool changes = ours.at(x, y) != plainly.at(x, y);
+      changed += changes ? 1 : 0;
+      EXPECT_TRUE(is_fine || !changes) << x << " " << y;
+    }
+  EXPECT_GT(changed, 0.9 * beyond);
+  EXPECT_EQ(ours.counts.supersampled, changed);
+}
+
+TEST(Fine, InTheBranchThatIsTaken) {
+  const std::string program = "c = 0.5\nif y < -0.01\n    c = Noise(40 * x, 40 * y)\n";
+  const Picture picture = render(program, {.antialias = procedural()});
+  EXPECT_GT(picture.counts.supersampled, 0.45 * pixels);
+  EXPECT_LT(picture.counts.supersampled, 0.55 * pixels);
+}
+
+}  // namespace
+}  // namespace pse::antialias::test

@@ -90,8 +90,12 @@ class Search {
         for (; wanted != 0; wanted &= wanted - 1) {
           const auto k = __builtin_ctz(wanted);
           const auto has = [&](std::uint32_t mask) { return (mask >> k & 1) != 0; };
-          *next++ = {tile_.rect.x0 + static_cast<int>(i) + k, y, has(silhouette), !has(edge),
-                     has(hidden), has(untold)};
+          *next++ = {.x = tile_.rect.x0 + static_cast<int>(i) + k,
+                     .y = y,
+                     .silhouette = has(silhouette),
+                     .narrow = !has(edge),
+                     .hidden = has(hidden),
+                     .untold = has(untold)};
         }
       }
     }

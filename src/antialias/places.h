@@ -48,7 +48,8 @@ struct Work {
   Crossings crossings;
   std::vector<Unclear> unclear;
   std::vector<Pixel> between;  // between the bends of a steep ramp
-  std::vector<Pixel> fine;     // with noise that is finer than they are
+  std::vector<Pixel> fine;     // memory of find_fine_pixels()
+  std::vector<Pixel> noisy;    // fine, and no edge is near
   Places places;    // where the next run is to be
   Results results;  // of the last run
   Scratch scratch;

@@ -173,25 +173,24 @@ void Refiner::smooth(const Tile& tile, const Work& work, Refined& result) const 
 
 Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts& counts) const {
   const std::span<const Pixel> found = find_edge_pixels(tile, options_.filter, work.found);
-  find_fine_pixels(tile, work.fine);
+  const std::span<const Pixel> fine = find_fine_pixels(tile, work.fine);
   Refined result({}, outputs_);
-  if (found.empty() && work.fine.empty()) return result;
-  work.unclear.clear(), work.between.clear();
-  for (const Pixel& pixel : work.fine) work.unclear.push_back({pixel});
-  counts.filtered += static_cast<std::int64_t>(work.fine.size());
+  if (found.empty() && fine.empty()) return result;
+  counts.filtered += static_cast<std::int64_t>(found.size() + fine.size());
+  work.unclear.clear(), work.between.clear(), work.noisy.clear();
   CrossingLists inner = work.crossings.lists(found.size());
   const auto is_before = [](const Pixel& a, const Pixel& b) {
     return a.y != b.y ? a.y < b.y : a.x < b.x;
   };
-  std::size_t fine = 0;
+  auto next = fine.begin();
   for (const Pixel& pixel : found) {
-    // What edges part is no clearer where it is fine itself.
-    while (fine < work.fine.size() && is_before(work.fine[fine], pixel)) ++fine;
-    if (fine < work.fine.size() && !is_before(pixel, work.fine[fine])) {
-      work.unclear[fine].pixel.silhouette = pixel.silhouette;
+    while (next != fine.end() && is_before(*next, pixel)) work.noisy.push_back(*next++);
+    if (next != fine.end() && !is_before(pixel, *next)) {
+      // What an edge parts is not clear either.
+      work.unclear.push_back({{.x = pixel.x, .y = pixel.y, .silhouette = pixel.silhouette}});
+      ++next, --counts.filtered;
       continue;
     }
-    ++counts.filtered;
     if (pixel.hidden && edges_ == nullptr) continue;
     inner.x[inner.count] = pixel.x, inner.y[inner.count] = pixel.y;
     inner.hidden[inner.count] = pixel.hidden ? 1 : 0;
@@ -201,6 +200,7 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
     else
       ++inner.count;
   }
+  work.noisy.insert(work.noisy.end(), next, fine.end());
   if (inner.count > 0) {
     find_crossings(inner, work, status);
     follow(inner, work, status);
@@ -209,6 +209,7 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
   counts.blended += static_cast<std::int64_t>(result.pixels.size());
   smooth(tile, work, result);
   settle(tile, result, counts, work, status);
+  settle_noise(result, counts, work, status);
   return result;
 }
 

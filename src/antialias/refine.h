@@ -78,6 +78,9 @@ class Refiner {
               RunStatus& status, const Visit& visit) const;
   bool by_regions(const Unclear& pixel, std::uint32_t look, const Results& results, std::size_t at,
                   std::span<float> values) const;
+  void add_means(std::span<const Pixel> pixels, std::uint32_t count, Refined& result, Work& work,
+                 RunStatus& status) const;
+  void settle_noise(Refined& result, Counts& counts, Work& work, RunStatus& status) const;
   static Range range_around(const Tile& tile, const Pixel& pixel, std::size_t output);
   void settle(const Tile& tile, Refined& result, Counts& counts, Work& work,
               RunStatus& status) const;

@@ -1,5 +1,5 @@
 // What is done for many pixels at once: the same results, for different instructions. The bodies
-// are in neighbours.h, crossing_steps.h and sample_steps.h, and steps_any.cpp and its like compile
+// are in neighbours.h, fine_steps.h, crossing_steps.h and sample_steps.h, and steps_any.cpp and its like compile
 // them.
 #pragma once
 
@@ -29,6 +29,8 @@ struct Steps {
   // Writes the pixels that find_edge_pixels() wants and gives their number; for a reach of 1 and 2.
   using Search = std::size_t (*)(const Tile& tile, const SearchRoom& room);
   std::array<Search, 2> search;
+  // Likewise the pixels that find_fine_pixels() wants; tile.fine is not null.
+  std::size_t (*find_fine)(const Tile& tile, Pixel* found);
 
   // Of `count` places where the edges are `lines` (edge_outputs lists, derive.h): is an edge within
   // `farthest`, are two within `reach` of the kernel?

@@ -1,5 +1,6 @@
 // For every processor.
 #include "antialias/crossing_steps.h"
+#include "antialias/fine_steps.h"
 #include "antialias/neighbours.h"
 #include "antialias/sample_steps.h"
 
@@ -7,6 +8,7 @@ namespace pse::antialias {
 
 const Steps& steps_for_any() {
   static constexpr Steps these = {{search<8, 1>, search<8, 2>},
+                                  find_fine<8>,
                                   see_nearness<4>,
                                   find_second_looks,
                                   look_again<4>,

@@ -20,6 +20,8 @@ constexpr std::uint32_t first_look = 8;
 constexpr float mean_per_range = 3;
 // So many samples tell the values of the regions of two edges.
 constexpr std::uint32_t corner_look = 16;
+// So many are enough where noise is fine and no edge is near.
+constexpr std::uint32_t noise_look = 16;
 
 // Whether some of what is in the range can be told from all that is in the other.
 bool exceeds(const Range& range, const Range& other) {
@@ -73,18 +75,30 @@ void Refiner::sample(std::span<const Pixel> pixels, std::uint32_t first, std::ui
 }
 
 Refined Refiner::supersample(std::vector<Pixel> pixels, Work& work, RunStatus& status) const {
-  const std::uint32_t count = this->count();
-  Refined all(std::move(pixels), outputs_);
-  sample(all.pixels, 0, count, work, status,
+  Refined all({}, outputs_);
+  add_means(pixels, count(), all, work, status);
+  return all;
+}
+
+void Refiner::settle_noise(Refined& result, Counts& counts, Work& work, RunStatus& status) const {
+  counts.supersampled += static_cast<std::int64_t>(work.noisy.size());
+  add_means(work.noisy, std::min(noise_look, count()), result, work, status);
+}
+
+void Refiner::add_means(std::span<const Pixel> pixels, std::uint32_t count, Refined& result,
+                        Work& work, RunStatus& status) const {
+  const std::size_t before = result.pixels.size();
+  result.pixels.insert(result.pixels.end(), pixels.begin(), pixels.end());
+  result.resize(result.pixels.size());
+  sample(pixels, 0, count, work, status,
          [&](std::size_t begin, std::size_t number, const Results& results) {
            const Summary summary = summaries(work, 1, number);
            for (std::size_t o = 0; o < outputs_; ++o) {
              steps().summarise(results[o], number, count, summary);
              for (std::size_t i = 0; i < number; ++i)
-               all.values[o][begin + i] = summary.sums[i] / static_cast<float>(count);
+               result.values[o][before + begin + i] = summary.sums[i] / static_cast<float>(count);
            }
          });
-  return all;
 }
 
 // The pixel's values from samples of each region of two edges; false where the samples of a region

@@ -15,7 +15,7 @@ struct Tile {
   Rect rect, area;
   std::span<float* const> planes;  // the outputs; behind them the path, and the ends if any
   std::size_t outputs = 0;         // without these
-  const float* fine = nullptr;  // of path.h; null: nothing is fine
+  const float* fine = nullptr;     // of path.h; null: nothing is fine
   const float* ids = nullptr;      // of the objects that the samples show; null: there is but one
 
   std::size_t at(int x, int y) const {
@@ -54,9 +54,10 @@ inline bool differ(float a, float b) {
 // How many pixels around a tile find_edge_pixels() looks at.
 int apron_of(const Filter& filter);
 
-// The pixels of tile.rect where noise is finer than a pixel (fine.h) and some output bends visibly:
-// what its neighbours and it show is on no line. In row-major order.
-void find_fine_pixels(const Tile& tile, std::vector<Pixel>& found);
+// The pixels of tile.rect where noise is finer than a pixel (fine.h) and some output deviates
+// visibly from its mean, as far as the neighbours that go the same way tell. In row-major order.
+// `found` is memory, used again.
+std::span<const Pixel> find_fine_pixels(const Tile& tile, std::vector<Pixel>& found);
 
 // Memory of find_edge_pixels(), used again from tile to tile.
 struct Found {

@@ -19,7 +19,7 @@ std::int64_t sampled(const std::string& program) {
 }
 
 TEST(Fine, FromHalfACellPerPixelOn) {
-  constexpr double most = 0.9 * pixels;
+  constexpr double most = 0.85 * pixels;
   EXPECT_EQ(sampled("c = Noise(7.1 * x, 0.3)\n"), 0);
   EXPECT_GT(sampled("c = Noise(7.2 * x, 0.3)\n"), most);
   EXPECT_EQ(sampled("c = Noise(0.3, 7.1 * y)\n"), 0);

@@ -88,6 +88,61 @@ TEST_F(StepsOfAntialiasing, SearchForTheSamePixels) {
       }
 }
 
+// Whether hardly a neighbour goes the same way is asked for all pixels at once where any of them is
+// an edge; of those that are none the answer would depend on what stands beside them.
+TEST_F(StepsOfAntialiasing, WhatIsNoEdgeIsNotUntold) {
+  constexpr int width = 16;
+  Tile tile{.rect = {0, 0, width, 1}, .area = {-1, -1, width + 1, 2}, .outputs = 1};
+  const auto samples = static_cast<std::size_t>(tile.area.width() * tile.area.height());
+  std::vector<float> values(samples + 64, 0.5f), path(samples + 64);
+  // Ways of their own around (2, 0), all of the same value; an edge at 6 in the same eight.
+  for (int y = -1; y < 2; ++y) {
+    for (int x = 1; x < 4; ++x) path[tile.at(x, y)] = static_cast<float>(100 * x + 1000 * (y + 2));
+    for (int x = 6; x < width + 1; ++x) values[tile.at(x, y)] = 1, path[tile.at(x, y)] = 1;
+  }
+  float* const planes[] = {values.data(), path.data()};
+  tile.planes = planes;
+  for (const Steps* steps : runnable()) {
+    std::vector<std::int32_t> changes(samples + 64);
+    std::vector<Pixel> found(samples + 64);
+    found.resize(steps->search[0](tile, {changes.data(), found.data()}));
+    int narrow = 0, edges = 0;
+    for (const Pixel& pixel : found) {
+      narrow += pixel.narrow ? 1 : 0, edges += pixel.narrow ? 0 : 1;
+      EXPECT_FALSE(pixel.untold) << pixel.x;
+    }
+    EXPECT_EQ(narrow, 5);
+    EXPECT_EQ(edges, 2);
+  }
+}
+
+TEST_F(StepsOfAntialiasing, FindTheSameFinePixels) {
+  for (const int width : {1, 7, 16, 33, 64}) {
+    Tile tile{.rect = {0, 0, width, 9}, .area = {-1, -1, width + 1, 10}, .outputs = 2};
+    const auto samples = static_cast<std::size_t>(tile.area.width() * tile.area.height());
+    std::vector<std::vector<float>> planes(4, std::vector<float>(samples + 64));
+    for (std::size_t i = 0; i < samples; ++i) {
+      planes[0][i] = any_number() / 20, planes[1][i] = number(0, 0.05f);
+      planes[2][i] = number(0, 1) < 0.8f ? 3 : 4;
+      planes[3][i] = number(0, 0.5f);
+    }
+    float* const pointers[] = {planes[0].data(), planes[1].data(), planes[2].data()};
+    tile.planes = pointers;
+    tile.fine = planes[3].data();
+    std::vector<std::pair<int, int>> first;
+    for (const Steps* steps : runnable()) {
+      std::vector<Pixel> pixels(samples);
+      pixels.resize(steps->find_fine(tile, pixels.data()));
+      std::vector<std::pair<int, int>> found;
+      for (const Pixel& pixel : pixels) found.emplace_back(pixel.x, pixel.y);
+      if (steps == &steps_for_any()) first = found;
+      EXPECT_EQ(found, first);
+    }
+    EXPECT_GT(first.size(), 0u);
+    EXPECT_LT(first.size(), static_cast<std::size_t>(width) * 9);
+  }
+}
+
 TEST_F(StepsOfAntialiasing, FollowEdgesToTheSameBits) {
   constexpr std::size_t count = 53;
   constexpr float reach = 0.5f;

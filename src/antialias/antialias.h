@@ -5,13 +5,14 @@
 //              march (searches); what is chance and none of them (dither)
 //   path       the program with one more output: which way each sample takes; and where it marches
 //              by a loop, one of what that ended with
+//   fine       noise that is finer than a pixel
 //   derive     the program that gives the edges around a sample (rules, activity, rotate,
 //              edge_state)
 //   programs   compiling both
 //   tile       neighbours with different paths, across which the picture jumps
 //   refine     one edge: both sides and the kernel's share (filter); more: supersample (spread)
 //   steps      what is done for many pixels at once, compiled for each kind of processor
-//              (neighbours, crossing_steps, sample_steps)
+//              (neighbours, fine_steps, crossing_steps, sample_steps)
 //   places     running a program anywhere (stream/sample_source.h)
 //   stored     where samples are known at pixels only: conditions laid open (force), their values
 //              fitted to neighbours (fit)

@@ -77,5 +77,13 @@ TEST(Fine, InTheBranchThatIsTaken) {
   EXPECT_LT(picture.counts.supersampled, 0.55 * pixels);
 }
 
+// An edge is no deviation of noise.
+TEST(Fine, EdgesInSlightNoiseAreBlended) {
+  const std::string program = "c = x + 0.3 * y > 0.02 ? 1 : 0\nc += 0.01 * Noise(40 * x, 40 * y)\n";
+  const Picture picture = render(program, {.antialias = procedural()});
+  EXPECT_GE(picture.counts.blended, 32);
+  EXPECT_EQ(picture.counts.supersampled, 0);
+}
+
 }  // namespace
 }  // namespace pse::antialias::test

@@ -74,8 +74,7 @@ class Execution {
     procedural_ = wanted && (anywhere || stored_);
     supersample_ = antialias_.mode == Mode::supersample;
     const std::size_t fine = procedural_ && anywhere ? find_fine(*quiet.runner) : nowhere;
-    // Without that there is nothing to do where there are no edges.
-    if (fine == nowhere && !programs_.edges.valid()) procedural_ = false;
+    if (fine == nowhere && programs_.has_only_noise) procedural_ = false;
     apron_ = procedural_ ? apron_of(antialias_.filter) : 0;
 
     std::optional<Refiner> all;

@@ -45,6 +45,7 @@ std::expected<Programs, std::string> compile_programs(CompiledFront front,
   if (!decisions.any && !decisions.any_noise) return finish(std::move(front));
   programs.has_paths = true;
   if (!decisions.any) {
+    programs.has_only_noise = true;
     add_path(copy.module, decisions);
     return finish(std::move(copy));
   }

@@ -28,13 +28,15 @@ struct Programs {
   // The same without checks: for samples at places that the user has not asked for.
   std::shared_ptr<const Program> quiet;
   std::size_t outputs = 0;
-  // Its edges (antialias/derive.h), compiled meanwhile; not valid where the program has no
-  // decisions, but noise that may be fine.
+  // Its edges (antialias/derive.h), compiled meanwhile; not valid where the program has no jumps:
+  // paths then tell objects apart, or where noise is fine.
   using Result = std::expected<std::shared_ptr<const Program>, std::string>;
   std::shared_future<Result> edges;
   // The program with its conditions laid open (antialias/force.h), compiled when it is asked for.
   std::shared_future<Result> conditions;
   bool has_paths = false;
+  // Paths are there for noise that may be finer than a pixel (fine.h), and for nothing else.
+  bool has_only_noise = false;
 };
 
 // `changes`: what is known of the samples that the programs will run on. The error is a sentence

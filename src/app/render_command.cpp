@@ -166,6 +166,7 @@ Exit render_command(Session& session) {
     parts.push_back({std::move(*made), std::move(knobs), std::move(textures)});
   }
   if (!stage.empty()) return Exit::ok;
+  if (surfaces) surfaces->load(options, session);
   const std::vector<Knob> knobs = parts.front().knobs;
   programs = parts.front().programs;
   const Textures no_textures(session, program.path, options.write.working);

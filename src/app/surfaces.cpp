@@ -17,6 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// In metres: single precision squares lengths within meshes.
+constexpr double largest_size = 1e15;
+
 // One light from above on the left, behind the eye.
 surface::Light usual_light() { return {{-0.55, 0.75, 0.6}, false, {1, 1, 1}, 0}; }
 
@@ -84,7 +87,12 @@ Surfaces::Surfaces(const RenderOptions& options, Session& session) : console_(se
     identities_.emplace_back("--camera " + options.camera, "");
   }
   if (!scene_.has_lights) scene_.lights = {usual_light()};
-  make_shapes(options, session);
+  for (SceneObject& object : scene_.objects)
+    if (!surface::is_shape_name(object.shape.shape)) {
+      const std::string found = find_beside(scene_.path, object.shape.shape, session);
+      object.shape.shape = found;
+      identities_.emplace_back(found, file_identity(found));
+    }
   if (options.trace) {
     // One program for all, and for the background, which has directions.
     program_of_.assign(scene_.objects.size() + 1, 0);
@@ -128,13 +136,8 @@ void Surfaces::read_scene(const RenderOptions& options, Session& session) {
   identities_.emplace_back(path, file_identity(path));
 }
 
-void Surfaces::make_shapes(const RenderOptions& options, Session& session) {
-  for (SceneObject& object : scene_.objects) {
-    if (!surface::is_shape_name(object.shape.shape)) {
-      const std::string found = find_beside(scene_.path, object.shape.shape, session);
-      object.shape.shape = found;
-      identities_.emplace_back(found, file_identity(found));
-    }
+void Surfaces::load(const RenderOptions& options, Session& session) {
+  for (const SceneObject& object : scene_.objects) {
     const auto made = [&] {
       if (!surface::is_field_name(object.shape.shape))
         return surface::make_shape(object.shape, options.scene.empty());
@@ -279,6 +282,7 @@ void Surfaces::begin_frame(const ImagePlane& plane, const RunStatus& run) {
   const surface::Camera seen = camera(plane, *placed_);
   lens_ = std::make_unique<surface::Lens>(seen, plane.width, plane.height);
   warn_inside(seen);
+  warn_too_thin();
   for (const Joined& joined : joined_)
     joined.shader->begin_frame(states(joined, plane), placed_, *lens_);
 }
@@ -321,6 +325,9 @@ void Surfaces::begin_stored_frame() {
   picture_.reset(), picture_of_.clear();  // not both in memory
   auto picture = image::read_image(bare->reader, {}, names);
   if (!picture) throw Failure(Exit::input, picture.error().message);
+  for (const std::string& what :
+       surface::clear_broken_pixels(*picture, layers_, bare->layers, bare->reader.spec()))
+    console_.warning(bare->file + ": " + what);
   picture_ = std::make_shared<const image::Image>(std::move(*picture));
   picture_of_ = std::move(of);
 }
@@ -341,6 +348,31 @@ void Surfaces::warn_unseen() {
     warned_unseen_ = true;
     console_.warning(
         fmt::format("nothing is seen of {}: {}", scene_.objects[i].shape.shape, why));
+  }
+}
+
+// Once, of the first frame in which an object falls between the pixels.
+void Surfaces::warn_too_thin() {
+  for (std::size_t i = 0; i < placed_->objects() && !warned_thin_; ++i) {
+    const surface::Object& object = placed_->object(i);
+    const double thick =
+        object.shape->thickness() * std::cbrt(std::abs(object.to_world.determinant()));
+    if (!std::isfinite(thick)) continue;
+    const double pixel =
+        lens_->project(object.to_world.point(object.shape->bounds().centre())).pixel;
+    const bool is_huge = thick > largest_size;
+    if (!is_huge && !(thick < 0.25 * pixel)) continue;
+    warned_thin_ = true;
+    const std::string& name = scene_.objects[i].shape.shape;
+    if (is_huge)
+      console_.warning(fmt::format(
+          "{} is {:.2g} m wide, and rays meet nothing larger than {:.0g} m; scale it down", name,
+          thick, largest_size));
+    else
+      console_.warning(fmt::format(
+          "little or nothing is seen of {}: it is {:.2g} m thick where a pixel is {:.2g} m wide; "
+          "make it larger, or come nearer with the camera",
+          name, thick, pixel));
   }
 }
 

@@ -31,8 +31,11 @@ struct SurfaceProgram {
 
 class Surfaces {
  public:
-  // Reads the scene and its meshes. Throws Failure (usage, input).
+  // Reads the scene and finds its files. Throws Failure (usage, input).
   Surfaces(const RenderOptions& options, Session& session);
+  // Reads the meshes, which may take seconds: once, before the first frame, and after what is wrong
+  // with the programs was told. Throws Failure (usage, input).
+  void load(const RenderOptions& options, Session& session);
   // Takes the surfaces of the images' bare picture (surface/gbuffer.h), if it has such; the images
   // then no longer bring these names. They must outlive this.
   static std::unique_ptr<Surfaces> stored(const RenderOptions& options, Session& session,
@@ -63,12 +66,12 @@ class Surfaces {
 
  private:
   void read_scene(const RenderOptions& options, Session& session);
-  void make_shapes(const RenderOptions& options, Session& session);
   int program_index(const std::string& written, const std::vector<KnobSetting>& knobs,
                     const RenderOptions& options, const Session& session);
   surface::Camera camera(const ImagePlane& plane, const surface::Scene& scene) const;
   void warn_inside(const surface::Camera& camera);
   void warn_unseen();
+  void warn_too_thin();
   void begin_stored_frame();
 
   Console& console_;
@@ -91,7 +94,7 @@ class Surfaces {
   std::shared_ptr<const surface::Scene> placed_;  // of the frame
   std::unique_ptr<surface::Lens> lens_;
   std::vector<std::pair<std::string, std::string>> identities_;
-  bool warned_ = false, warned_unseen_ = false;
+  bool warned_ = false, warned_unseen_ = false, warned_thin_ = false;
 
   // Of stored surfaces.
   InputImages* images_ = nullptr;

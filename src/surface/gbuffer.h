@@ -37,6 +37,13 @@ std::vector<StreamName> gbuffer_names(const SurfaceLayers& layers,
 // The layers that the values of a module's inputs come from.
 std::vector<std::string> layers_wanted(const ir::Module& module, const SurfaceLayers& layers);
 
+// Makes background of the pixels whose position or normal has a number that is not finite, in all
+// of these layers that the picture holds; what it says: one sentence for each channel that had such
+// at pixels that show something.
+std::vector<std::string> clear_broken_pixels(image::Image& picture, const SurfaceLayers& layers,
+                                             std::span<const image::Layer> all,
+                                             const image::ImageSpec& spec);
+
 // A source of samples at pixel centres.
 class GBuffer : public SampleSource {
  public:

@@ -57,6 +57,11 @@ class Shape {
   // wanted, since they may cost as much as all the rest.
   virtual void describe(std::span<const Ray> rays, std::span<const Meeting> meetings, bool with_uv,
                         std::span<ShapePoint> points) const = 0;
+  // How wide it is at its thinnest, in its own frame: what is much finer is passed by.
+  virtual double thickness() const {
+    const Vec3 size = bounds().upper - bounds().lower;
+    return std::max({size.x, size.y, size.z});
+  }
   // Why nobody will see the shape, as a sentence; empty where it may be seen. May take as long as
   // many rays.
   virtual std::string why_unseen() const { return ""; }

@@ -16,6 +16,7 @@ class Torus : public SingleShape {
     const double r = major_ + minor_;
     return {{-r, -minor_, -r}, {r, minor_, r}};
   }
+  double thickness() const override { return 2 * minor_; }
 
  private:
   void meet(const Ray& ray, Meeting& meeting) const override {

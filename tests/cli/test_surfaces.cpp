@@ -133,6 +133,66 @@ TEST_F(Surfaces, ATracedPictureShadesToTheSameBits) {
   }
 }
 
+// NaN in three pixels' places and one's normal, infinite in another's: those are background, each
+// channel is named with its count, and the others are what they were.
+TEST_F(Surfaces, BrokenPixelsOfATracedPictureAreBackground) {
+  file("nan.pse",
+       "nothing = 0 * px\nlost = nothing / nothing\n"
+       "row = floor(py) == 20\ni = floor(px)\n"
+       "P = row and i > 9 and i < 13 ? [place.x lost place.z] : place\n"
+       "N = row and i == 20 ? [lost lost normal.z] : row and i == 22 ? "
+       "[normal.x 1 / nothing normal.z] : normal\nid = hit\n");
+  file("p.pse", "color = place + normal\n");
+  const std::vector<std::string> size = {"--res", "32x40", "--antialias", "none"};
+  const auto on_sphere = [&](std::vector<std::string> words) {
+    words.insert(words.end(), {"--on", "sphere", "--camera", "eye=0,0,1.5"});
+    words.insert(words.end(), size.begin(), size.end());
+    return words;
+  };
+  render(on_sphere({"nan.pse", "--nan", "keep"}), "g.exr");
+  const image::Image direct = render(on_sphere({"p.pse"}), "a.exr");
+  const Ended ended =
+      pse({"render", "p.pse", "g.exr", "-o", "b.exr", "--float", "--antialias", "none"});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_TRUE(contains(ended.err, "g.exr: P.Y is NaN or infinite at 3 pixels; they are shown as "
+                                  "background"));
+  EXPECT_TRUE(contains(ended.err, "N.X is NaN or infinite at 1 pixel; it is shown as background"));
+  EXPECT_TRUE(contains(ended.err, "N.Y is NaN or infinite at 2 pixels"));
+  EXPECT_FALSE(contains(ended.err, "N.Z is"));
+  const image::Image stored = picture("b.exr");
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 32; ++x) {
+      const bool broken = y == 20 && ((x > 9 && x < 13) || x == 20 || x == 22);
+      EXPECT_EQ(at(stored, "A", x, y), broken ? 0 : at(direct, "A", x, y)) << x << " " << y;
+      EXPECT_EQ(at(stored, "G", x, y), broken ? 0 : at(direct, "G", x, y)) << x << " " << y;
+    }
+}
+
+// What is wrong with a program is told before meshes are read, which may take long.
+TEST_F(Surfaces, ProgramsAreCompiledBeforeMeshesAreRead) {
+  file("p.pse", "color = whte\n");
+  file("bad.obj", "this is no mesh\n");
+  const Ended ended = pse({"render", "p.pse", "--on", "bad.obj", "-o", "x.png"});
+  EXPECT_EQ(ended.status, 3);
+  EXPECT_TRUE(contains(ended.err, "`whte`"));
+  EXPECT_FALSE(contains(ended.err, "bad.obj"));
+}
+
+TEST_F(Surfaces, WhatFallsBetweenThePixelsIsNamed) {
+  file("p.pse", "color = white\n");
+  const auto said = [&](const std::string& words) {
+    file("s.toml", "program = \"p.pse\"\n[[object]]\n" + words);
+    return pse({"render", "s.toml", "-o", "x.png", "--res", "32x32"}).err;
+  };
+  EXPECT_TRUE(contains(said("shape = \"torus\"\nminor = 1e-6\n"),
+                       "little or nothing is seen of torus: it is 2e-06 m thick where a pixel is"));
+  EXPECT_TRUE(contains(said("shape = \"sphere\"\nscale = 1e-20\n"),
+                       "little or nothing is seen of sphere: it is 2e-20 m thick"));
+  EXPECT_TRUE(contains(said("shape = \"box\"\nscale = 1e20\n"), "box is 1.4e+20 m wide"));
+  for (const char* shape : {"torus", "sphere", "box", "plane", "vase"})
+    EXPECT_FALSE(contains(said("shape = \"" + std::string(shape) + "\"\n"), "warning")) << shape;
+}
+
 // Position and normal by other names, without directions: the rest follows.
 TEST_F(Surfaces, AnotherRenderersPictureIsShaded) {
   file("other.pse",

@@ -145,6 +145,10 @@ TEST_F(PlyMeshes, FilesThatEndEarlyAndCountsThatLie) {
   EXPECT_EQ(
       error_of(head("little", xyz, corners, 4'000'000'000, 2) + square().text),
       "the file ends at vertex 5 of 4000000000: it is damaged, or was not written to its end");
+  // More than there are numbers for vertices is no matter for the library either.
+  EXPECT_EQ(
+      error_of(head("little", xyz, corners, 4'300'000'000, 2) + square().text),
+      "the file ends at vertex 5 of 4300000000: it is damaged, or was not written to its end");
   EXPECT_EQ(error_of(head("little", xyz, corners, 4, 101) + square().text),
             "the mesh has 101 faces and at most 100 are taken; make a coarser copy of it first");
   // A list of as many corners as fit into four bytes.
@@ -171,6 +175,34 @@ TEST_F(PlyMeshes, IndicesBeyondTheVerticesAndNaNAreLeftOut) {
   ASSERT_EQ(notes->size(), 2u);
   EXPECT_EQ((*notes)[0], "2 faces name vertices that the file does not have; left out");
   EXPECT_EQ((*notes)[1], "1 face has a corner that is not a number; left out");
+}
+
+// Whatever is below 0 names no vertex, however narrow the number, and does not come round to one.
+TEST_F(PlyMeshes, IndicesBelowZero) {
+  const auto corners_of = [&](const std::string& type, Body body) {
+    const auto done = read(head("little", xyz, "property list uchar " + type + " vertex_indices\n",
+                                4, 2) +
+                           body.text);
+    EXPECT_TRUE(done && *done);
+    EXPECT_EQ(mesh_.triangles.size(), 6u);
+    for (const std::size_t k : {0u, 1u, 2u}) EXPECT_EQ(mesh_.triangles[k], k);
+    EXPECT_GE(mesh_.triangles[3], mesh_.vertex_count());
+    EXPECT_EQ((*clean_mesh(mesh_))[0],
+              "1 face names a vertex that the file does not have; left out");
+  };
+  const auto bytes = [](std::initializer_list<int> list) {
+    Body body;
+    body.add(std::uint8_t{3});
+    for (const int i : list) body.add(static_cast<std::int8_t>(i));
+    return body.text;
+  };
+  Body narrow = square();
+  narrow.text += bytes({0, 1, 2}) + bytes({-3, 1, 2});
+  corners_of("char", narrow);
+  corners_of("short", square()
+                          .face<std::int16_t>({0, 1, 2})
+                          .face<std::int16_t>({std::int16_t{-32768}, 1, 2}));
+  corners_of("int", square().face({0, 1, 2}).face({-2147483647 - 1, 1, 2}));
 }
 
 // Bytes changed at random, in the head and behind it, and cut: something is said, or a mesh comes

@@ -134,16 +134,6 @@ Exit bake_atlas(Session& session) {
   const AtlasOptions options = atlas_options(session);
   const RenderOptions& common = options.common;
 
-  // The mesh and its atlas.
-  const auto mesh = read_mesh(options, session);
-  const auto atlas = surface::make_atlas(*mesh, options.size);
-  if (!atlas) throw Failure(Exit::input, fmt::format("{}: {}", options.mesh, atlas.error()));
-  if (atlas->overlaps > 0)
-    session.console.warning(
-        fmt::format("{}: {} of {} samples belong to several triangles: the mesh's texture "
-                    "coordinates overlap, and the first triangle is baked there",
-                    options.mesh, atlas->overlaps, atlas->samples.size()));
-
   // Compile.
   const std::vector<KnobSetting> settings = knob_settings(session, common.knob_words);
   ProgramFile program = read_program(common.program, session);
@@ -164,6 +154,16 @@ Exit bake_atlas(Session& session) {
   const std::vector<Knob> knobs = apply_settings(compiled->knobs, settings, session.console);
   report(stored.load(compiled->module()), program.sources, session);
   const std::vector<PlannedFile> files = plan_outputs(common, *compiled);
+
+  // The mesh and its atlas, which may take longer than all that can be wrong above.
+  const auto mesh = read_mesh(options, session);
+  const auto atlas = surface::make_atlas(*mesh, options.size);
+  if (!atlas) throw Failure(Exit::input, fmt::format("{}: {}", options.mesh, atlas.error()));
+  if (atlas->overlaps > 0)
+    session.console.warning(
+        fmt::format("{}: {} of {} samples belong to several triangles: the mesh's texture "
+                    "coordinates overlap, and the first triangle is baked there",
+                    options.mesh, atlas->overlaps, atlas->samples.size()));
 
   // Run, frame by frame.
   const std::vector<int> frames = common.frames.empty() ? std::vector<int>{0} : common.frames;

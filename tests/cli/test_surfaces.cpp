@@ -176,6 +176,9 @@ TEST_F(Surfaces, ProgramsAreCompiledBeforeMeshesAreRead) {
   EXPECT_EQ(ended.status, 3);
   EXPECT_TRUE(contains(ended.err, "`whte`"));
   EXPECT_FALSE(contains(ended.err, "bad.obj"));
+  const Ended baked = pse({"bake", "p.pse", "bad.obj", "-o", "x.png"});
+  EXPECT_EQ(baked.status, 3);
+  EXPECT_TRUE(contains(baked.err, "`whte`"));
 }
 
 TEST_F(Surfaces, WhatFallsBetweenThePixelsIsNamed) {

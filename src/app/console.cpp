@@ -49,6 +49,10 @@ void Console::note(std::string_view line) {
 void Console::warning(std::string_view code, std::string_view line) {
   if (!warnings_.shows(code)) return;
   count_warning();
+  {
+    const std::lock_guard lock(mutex_);
+    if (!said_.emplace(line).second) return;
+  }
   say("warning", "1;35", fmt::format("{} [{}]", line, code));
 }
 

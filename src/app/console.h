@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdio>
 #include <mutex>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -19,7 +20,8 @@ class Console {
   void print(std::string_view text);
   // Said to a person, a line each. `note` is silent when quiet.
   void note(std::string_view line);
-  // The one door of warnings that are no diagnostics: hidden where -W hides `code`, else counted.
+  // The one door of warnings that are no diagnostics: hidden where -W hides `code`, else counted,
+  // and the same line said once.
   void warning(std::string_view code, std::string_view line);
   void error(std::string_view line, std::string_view hint = {});
   // Text that already has its lines and colours, such as diagnostics.
@@ -48,6 +50,7 @@ class Console {
   bool quiet_ = false;
   WarningPolicy warnings_;
   std::atomic<bool> warned_ = false;
+  std::set<std::string> said_;  // warnings
   bool status_shown_ = false;
   std::mutex mutex_;
 };

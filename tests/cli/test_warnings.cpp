@@ -50,6 +50,15 @@ TEST_F(Warnings, OfKnobs) {
   governed(render({"a.pse"}), "knob-range");
 }
 
+// Several programs of a job may find the same, as a prepass's does.
+TEST_F(Warnings, AreSaidOnce) {
+  file("a.pse", "Level = 1 [[ min = 0, max = 2 ]]\ncolor = white * Level\n");
+  const std::string said = pse(render({"a.pse", "Level=3", "Level=3"})).err;
+  const std::size_t first = said.find("knob-range");
+  ASSERT_NE(first, std::string::npos);
+  EXPECT_EQ(said.find("knob-range", first + 1), std::string::npos) << said;
+}
+
 TEST_F(Warnings, OfConfiguration) {
   file("a.pse", "color = white\n");
   file("pse.toml", "[render]\nthread = 1\n");

@@ -82,7 +82,7 @@ std::shared_ptr<const surface::Mesh> read_mesh(const AtlasOptions& options, Sess
   }
   const auto loaded = surface::load_mesh(session.find_file(spec->shape), reading);
   if (!loaded) throw Failure(Exit::input, loaded.error());
-  for (const std::string& note : loaded->notes) session.console.warning(note);
+  for (const std::string& note : loaded->notes) session.console.warning("mesh", note);
   return loaded->mesh;
 }
 
@@ -161,6 +161,7 @@ Exit bake_atlas(Session& session) {
   if (!atlas) throw Failure(Exit::input, fmt::format("{}: {}", options.mesh, atlas.error()));
   if (atlas->overlaps > 0)
     session.console.warning(
+        "overlap",
         fmt::format("{}: {} of {} samples belong to several triangles: the mesh's texture "
                     "coordinates overlap, and the first triangle is baked there",
                     options.mesh, atlas->overlaps, atlas->samples.size()));
@@ -222,6 +223,7 @@ Exit bake_atlas(Session& session) {
         throw Failure(Exit::strict, fmt::format("{} results are NaN or infinite", bad));
       if (bad > 0)
         session.console.warning(
+            "not-finite",
             fmt::format("{} results were NaN or infinite; 0 is stored there", bad));
       const std::string name = *image::frame_name(file.pattern, frames[f]);
       if (const auto done = image::write_image(name, picture, file.write); !done)

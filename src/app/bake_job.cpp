@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "app/knobs.h"
+#include "app/report.h"
 #include "base/hash.h"
 #include "image/output_file.h"
 #include "image/sequence.h"
@@ -215,16 +216,17 @@ void BakeJob::report_result(const volume::BakeResult& result, const std::string&
                                     "`{}` at point [{:g} {:g} {:g}]",
                                     result.not_finite, grid, result.not_finite_at[0],
                                     result.not_finite_at[1], result.not_finite_at[2]));
-    session_.console.raw_error(print_text(diagnostics, sources_, session_.console.colour()));
+    show(diagnostics, sources_, session_.console);
   }
   if (result.not_finite > 0 && options_.common.nan == image::NanPolicy::error) return;
   if (result.active == 0)
     session_.console.warning(
+        "empty",
         fmt::format("{} is empty: no voxel's centre lies in matter; --bounds moves the box, and "
                     "what is thinner than a voxel ({:.3g} m) wants a higher --res",
                     name, *std::max_element(lattice_.voxel().begin(), lattice_.voxel().end())));
   else if (result.cut)
-    session_.console.warning(fmt::format(
+    session_.console.warning("cut", fmt::format(
         "{}: matter reaches the side of the box and is cut; --bounds makes it larger", name));
   session_.console.note(fmt::format("wrote {}: {}x{}x{} voxels, {:.1f} % with matter", name,
                                     size[0], size[1], size[2],

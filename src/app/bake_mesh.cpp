@@ -30,7 +30,7 @@ Exit bake_mesh(Session& session, const VolumeOptions& options, Signals& signals)
   mesh_options.fit = options.fit;
   const auto loaded = surface::load_mesh(file, mesh_options);
   if (!loaded) throw Failure(Exit::input, loaded.error());
-  for (const std::string& note : loaded->notes) session.console.warning(note);
+  for (const std::string& note : loaded->notes) session.console.warning("mesh", note);
 
   // Its points in the file's axes, and their box.
   std::vector<std::array<float, 3>> points;

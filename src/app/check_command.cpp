@@ -39,7 +39,7 @@ Exit check_command(Session& session) {
   if (names.empty()) throw usage_error("check needs a program", "pse check PROGRAM...");
   if (std::count(names.begin(), names.end(), "-") > 1)
     throw usage_error("standard input can be read only once");
-  const WarningPolicy policy = warning_policy(session.arguments);
+  const WarningPolicy& policy = session.console.warnings();
   const bool json = session.arguments.has("json");
 
   Exit worst = Exit::ok;
@@ -57,7 +57,7 @@ Exit check_command(Session& session) {
       const bool empty = inner.find('{') == std::string::npos;
       if (!empty) all_json += (all_json.empty() ? "" : ",") + inner;
     } else {
-      session.console.raw_error(print_text(shown, program.sources, session.console.colour()));
+      show(found, program.sources, session.console);
       if (shown.all().empty())
         session.console.note(fmt::format("{}: no errors", program.sources.file(program.file).name));
     }

@@ -7,6 +7,7 @@
 #include "app/completion.h"
 #include "app/help.h"
 #include "app/man_page.h"
+#include "app/report.h"
 #include "app/session.h"
 #include "app/version.h"
 #include "diag/diagnostics.h"
@@ -103,9 +104,14 @@ Exit run(const std::vector<std::string>& words, Console& console) {
   Session session{parse_arguments(command, {words.begin() + 1, words.end()}), {}, console};
   console.set_quiet(session.arguments.has("quiet"));
   add_environment(session.arguments, environment_variable);
-  session.configuration = add_configuration(session.arguments, console);
+  session.configuration = add_configuration(session.arguments);
   check_choices(session.arguments);
-  return dispatch(session);
+  console.set_warnings(warning_policy(session.arguments));
+  for (const std::string& line : session.configuration.unknown)
+    console.warning("configuration", line);
+  const Exit exit = dispatch(session);
+  if (exit == Exit::ok && console.strict_failure()) throw strict_failure();
+  return exit;
 }
 
 }  // namespace

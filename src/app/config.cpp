@@ -43,27 +43,30 @@ bool some_command_has(const std::string& option) {
   return false;
 }
 
-void warn_unknown(const TomlEntry& entry, const std::string& name, Console& console) {
+void warn_unknown(const TomlEntry& entry, const std::string& name,
+                  std::vector<std::string>& unknown) {
   std::vector<std::string> names = {"path"};
   for (const CommandSpec& command : commands())
     for (const OptionSpec& option : command.options)
       if (entry.table.empty() || entry.table == command.name) names.emplace_back(option.name);
   const std::string near = nearest_name(entry.key, names);
-  console.warning(fmt::format("{}:{}: there is no option `{}`{}", name, entry.line, entry.key,
+  unknown.push_back(fmt::format("{}:{}: there is no option `{}`{}", name, entry.line, entry.key,
                               near.empty() ? "" : fmt::format("; did you mean `{}`?", near)));
 }
 
 // Whether the entry is of use to this command; warns where it is of use to none.
 const OptionSpec* option_of(const TomlEntry& entry, const CommandSpec& command,
-                            const std::string& name, Console& console) {
+                            const std::string& name,
+                  std::vector<std::string>& unknown) {
   if (!entry.table.empty() && find_command(entry.table) == nullptr) {
-    console.warning(fmt::format("{}:{}: there is no command `{}`", name, entry.line, entry.table));
+    unknown.push_back(
+        fmt::format("{}:{}: there is no command `{}`", name, entry.line, entry.table));
     return nullptr;
   }
   const bool known = entry.table.empty()
                          ? some_command_has(entry.key)
                          : find_option(*find_command(entry.table), entry.key) != nullptr;
-  if (!known) warn_unknown(entry, name, console);
+  if (!known) warn_unknown(entry, name, unknown);
   return entry.table.empty() || entry.table == command.name ? find_option(command, entry.key)
                                                             : nullptr;
 }
@@ -76,7 +79,7 @@ std::string joined(const std::vector<std::string>& elements) {
 
 }  // namespace
 
-Configuration add_configuration(Arguments& arguments, Console& console) {
+Configuration add_configuration(Arguments& arguments) {
   Configuration configuration;
   configuration.files = configuration_files();
   for (const fs::path& file : configuration.files) {
@@ -92,7 +95,7 @@ Configuration add_configuration(Arguments& arguments, Console& console) {
           configuration.path.push_back(file.parent_path() / folder);
         continue;
       }
-      const OptionSpec* option = option_of(entry, *arguments.command, name, console);
+      const OptionSpec* option = option_of(entry, *arguments.command, name, configuration.unknown);
       if (option == nullptr || arguments.has(option->name)) continue;
       std::vector<OptionValue>& values = arguments.options[entry.key];
       const std::string origin = fmt::format("{}:{}: {}", name, entry.line, entry.key);

@@ -46,7 +46,15 @@ void Console::note(std::string_view line) {
   if (!quiet_) say("", "", line);
 }
 
-void Console::warning(std::string_view line) { say("warning", "1;35", line); }
+void Console::warning(std::string_view code, std::string_view line) {
+  if (!warnings_.shows(code)) return;
+  count_warning();
+  {
+    const std::lock_guard lock(mutex_);
+    if (!said_.emplace(line).second) return;
+  }
+  say("warning", "1;35", fmt::format("{} [{}]", line, code));
+}
 
 void Console::error(std::string_view line, std::string_view hint) {
   say("error", "1;31", line);

@@ -113,7 +113,8 @@ void check_range(const Knob& knob, const KnobSetting& setting, Console& console)
   for (const float value : knob.value) {
     const bool below = knob.min && value < *knob.min, above = knob.max && value > *knob.max;
     if (below || above)
-      console.warning(fmt::format("{}: {} = {} is {} its {} of {}", where(setting), knob.name,
+      console.warning("knob-range",
+                      fmt::format("{}: {} = {} is {} its {} of {}", where(setting), knob.name,
                                   value, below ? "below" : "above", below ? "minimum" : "maximum",
                                   below ? *knob.min : *knob.max));
   }

@@ -135,7 +135,7 @@ Exit PrepassStage::run(Session& session, RenderOptions& options, const ProgramFi
     proven = proven && found.proven, possible = std::max(possible, found.possible);
   }
   if (total.missed > 0)
-    session.console.warning(fmt::format(
+    session.console.warning("prepass", fmt::format(
         "the prepass did not see matter at {} of {} probes: it is thinner than {} pixels or steps. "
         "It was followed from there; a smaller --prepass sees more",
         total.missed, total.probes, options.prepass));

@@ -151,6 +151,7 @@ Exit RenderJob::run_frame(int index, int frame) {
   if (index == 0 && options_.antialias.mode == antialias::Mode::supersample &&
       antialias().mode == antialias::Mode::none)
     session_.console.warning(
+        "samples",
         "more samples change nothing here: the program reads stored pixels, which are known at "
         "their centres only");
 
@@ -280,13 +281,14 @@ void RenderJob::write_snapshots(FrameWriter& writer) {
   try {
     const std::vector<Snapshot> snapshots = writer.write_snapshots();
     if (snapshots.empty())
-      session_.console.warning("there are no snapshots of films and of standard output");
+      session_.console.warning("snapshot",
+                               "there are no snapshots of films and of standard output");
     for (const auto& [name, step] : snapshots)
       session_.console.note(step == 1
                                 ? fmt::format("wrote {}", name)
                                 : fmt::format("wrote {}, 1 of {}x{} pixels", name, step, step));
   } catch (const Failure& failure) {
-    session_.console.warning(failure.what());  // the job goes on
+    session_.console.warning("snapshot", failure.what());  // the job goes on
   }
 }
 

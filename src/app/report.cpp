@@ -29,9 +29,7 @@ WarningPolicy warning_policy(const Arguments& arguments) {
 Diagnostics filtered(const Diagnostics& diagnostics, const WarningPolicy& policy) {
   Diagnostics shown;
   for (const Diagnostic& diagnostic : diagnostics.all()) {
-    const bool hidden = std::find(policy.hidden.begin(), policy.hidden.end(), diagnostic.code) !=
-                        policy.hidden.end();
-    if (diagnostic.severity == Severity::error || !(policy.hide_all || hidden))
+    if (diagnostic.severity == Severity::error || policy.shows(diagnostic.code))
       shown.add(diagnostic);
   }
   shown.sort();
@@ -55,14 +53,23 @@ Exit exit_of(const Diagnostics& diagnostics, const WarningPolicy& policy) {
   return warned && policy.are_errors ? Exit::strict : Exit::ok;
 }
 
+Diagnostics show(const Diagnostics& diagnostics, const SourceMap& sources, Console& console) {
+  Diagnostics shown = filtered(diagnostics, console.warnings());
+  console.raw_error(print_text(shown, sources, console.colour()));
+  for (const Diagnostic& diagnostic : shown.all())
+    if (diagnostic.severity == Severity::warning) console.count_warning();
+  return shown;
+}
+
+Failure strict_failure() {
+  return Failure(Exit::strict, "there are warnings, and -Werror makes them errors");
+}
+
 void report(const Diagnostics& diagnostics, const SourceMap& sources, Session& session) {
-  const WarningPolicy policy = warning_policy(session.arguments);
-  const Diagnostics shown = filtered(diagnostics, policy);
-  session.console.raw_error(print_text(shown, sources, session.console.colour()));
-  const Exit exit = exit_of(shown, policy);
-  if (exit == Exit::strict)
-    throw Failure(exit, "there are warnings, and -Werror makes them errors");
-  if (exit != Exit::ok) throw Failure(exit, "");
+  Console& console = session.console;
+  const Exit exit = exit_of(show(diagnostics, sources, console), console.warnings());
+  if (exit != Exit::ok && exit != Exit::strict) throw Failure(exit, "");
+  if (console.strict_failure()) throw strict_failure();
 }
 
 }  // namespace pse::app

@@ -6,20 +6,19 @@
 
 namespace pse::app {
 
-// -W: which warnings to show, and whether they count as errors.
-struct WarningPolicy {
-  bool hide_all = false;
-  bool are_errors = false;
-  std::vector<std::string> hidden;  // codes
-};
+// What -W says. Throws Failure (usage) for an unknown word.
 WarningPolicy warning_policy(const Arguments& arguments);
 
 // The diagnostics that the policy shows, in order.
 Diagnostics filtered(const Diagnostics& diagnostics, const WarningPolicy& policy);
 
-// Prints them as text on standard error. Throws Failure: `program` after errors, `strict` after
-// warnings under -Werror.
+// Prints those that the policy shows as text on standard error; returns them.
+Diagnostics show(const Diagnostics& diagnostics, const SourceMap& sources, Console& console);
+// Shows them on standard error. Throws Failure: `program` after errors, `strict` after
+// warnings, these or any before, under -Werror.
 void report(const Diagnostics& diagnostics, const SourceMap& sources, Session& session);
+// What -Werror says at the end.
+Failure strict_failure();
 // How a command should end after these (already filtered) diagnostics.
 Exit exit_of(const Diagnostics& diagnostics, const WarningPolicy& policy);
 

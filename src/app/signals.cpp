@@ -13,8 +13,9 @@
 namespace pse::app {
 namespace {
 
-// From the signal to the process's end, at most.
-constexpr long patience_ns = 45'000'000;
+// From the signal to _exit(), at most. The system then takes 15 ms and more to tear down a process
+// that writes a picture 16384 pixels wide.
+constexpr long patience_ns = 25'000'000;
 
 sigset_t watched_signals() {
   sigset_t set;

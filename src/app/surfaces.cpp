@@ -153,7 +153,7 @@ void Surfaces::load(const RenderOptions& options, Session& session) {
       throw Failure(Exit::input,
                     fmt::format("{}:{}: {}", scene_.path, error.line, error.message), error.hint);
     }
-    for (const std::string& note : made->notes) console_.warning(note);
+    for (const std::string& note : made->notes) console_.warning("mesh", note);
     shapes_.push_back(made->shape);
   }
 }
@@ -336,7 +336,7 @@ void Surfaces::warn_inside(const surface::Camera& camera) {
   const std::vector<std::string> around = placed_->around(camera.eye);
   if (around.empty() || warned_) return;
   warned_ = true;
-  console_.warning(fmt::format("the camera is inside {}: what is seen is its back",
+  console_.warning("inside", fmt::format("the camera is inside {}: what is seen is its back",
                                fmt::join(around, ", ")));
 }
 
@@ -347,6 +347,7 @@ void Surfaces::warn_unseen() {
     if (why.empty()) continue;
     warned_unseen_ = true;
     console_.warning(
+        "unseen",
         fmt::format("nothing is seen of {}: {}", scene_.objects[i].shape.shape, why));
   }
 }

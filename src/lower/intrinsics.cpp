@@ -156,6 +156,10 @@ Typed Lowering::intrinsic_texture(std::vector<CallArgument>& arguments, const Sp
     return {};
   }
   operands.push_back(width.parts.front());
+  if (given.contains("width") && filter != "mipmap")
+    warning("unused-width", given["width"]->span,
+            "`width` is of use to the filter \"mipmap\" only, not to \"" + filter + "\"",
+            "add filter=\"mipmap\", or leave the width out");
 
   std::string problem = "images cannot be read here";
   const int components =

@@ -405,6 +405,42 @@ TEST_F(Render, ForeignPicturesAreReadEveryTime) {
   }
 }
 
+// A program may draw where its image has nothing: the whole frame is written, unless --clip says
+// otherwise (docs/decisions/2026-11-29-windows.md).
+TEST_F(Render, ASmallDataWindowDoesNotCutTheOutput) {
+  file("make.pse", "color = white\n");
+  ASSERT_EQ(pse({"render", "make.pse", "-o", "in.exr", "--res", "8x6", "--clip", "2,1,5,4"}).status,
+            0);
+  ASSERT_EQ(picture("in.exr").spec.data, (image::Window{2, 1, 5, 4}));
+  file("a.pse", "color = color + [0 0.5 0]\n");
+  ASSERT_EQ(pse({"render", "a.pse", "in.exr", "-o", "out.exr", "--layers", "color"}).status, 0);
+  const image::Image out = picture("out.exr");
+  EXPECT_EQ(out.spec.display, (image::Window{0, 0, 8, 6}));
+  EXPECT_EQ(out.spec.data, (image::Window{0, 0, 8, 6}));
+  EXPECT_EQ(out.at(out.spec.find("R"), 0, 0), 0);
+  EXPECT_EQ(out.at(out.spec.find("G"), 0, 0), 0.5f);
+  EXPECT_EQ(out.at(out.spec.find("R"), 3, 2), 1);
+  ASSERT_EQ(pse({"render", "a.pse", "in.exr", "-o", "cut.exr", "--clip", "2,1,5,4"}).status, 0);
+  EXPECT_EQ(picture("cut.exr").spec.data, (image::Window{2, 1, 5, 4}));
+}
+
+// What --colorspace acescg writes is AP1: read as Rec. 709 it is the published matrix's columns
+// (Bradford adaptation).
+TEST_F(Render, AcescgIsWrittenAsTheKnownMatrixSays) {
+  file("a.pse", "Red = 0\nGreen = 0\nBlue = 0\ncolor = [Red Green Blue]\n");
+  const char* const names[] = {"Red", "Green", "Blue"};
+  const double columns[3][3] = {{1.7050510, -0.1302564, -0.0240034},
+                                {-0.6217921, 1.1408048, -0.1289690},
+                                {-0.0832589, -0.0105485, 1.1529724}};
+  for (int c = 0; c < 3; ++c) {
+    ASSERT_EQ(pse({"render", "a.pse", "-o", "a.exr", "--res", "1x1", "--colorspace", "acescg",
+                   std::string(names[c]) + "=1"}).status, 0);
+    const image::Image read = picture("a.exr");
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(read.at(read.spec.find(std::string(1, "RGB"[k])), 0, 0), columns[c][k], 5e-5);
+  }
+}
+
 // 12 million pixels of 12 bytes are too many to be kept: every third of every third row is.
 TEST_F(Render, ASnapshotOfALargePictureIsThinned) {
   file("half.pse", "i = 0\nif v < 0.5\n    while i < 1e30\n        i = i + v\ncolor = [px i py]\n");

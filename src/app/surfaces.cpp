@@ -24,8 +24,7 @@ constexpr double largest_size = 1e15;
 surface::Light usual_light() { return {{-0.55, 0.75, 0.6}, false, {1, 1, 1}, 0}; }
 
 // Beside the file that names it, else as the session finds it.
-std::string find_beside(const std::string& owner, const std::string& name,
-                        const Session& session) {
+std::string find_beside(const std::string& owner, const std::string& name, const Session& session) {
   std::error_code error;
   const fs::path beside = fs::path(owner).parent_path() / name;
   if (fs::path(name).is_relative() && fs::exists(beside, error)) return beside.string();
@@ -99,9 +98,8 @@ Surfaces::Surfaces(const RenderOptions& options, Session& session) : console_(se
     requests_.emplace_back();
     return;
   }
-  program_of_ = {scene_.background.empty()
-                     ? -1
-                     : program_index(scene_.background, {}, options, session)};
+  program_of_ = {
+      scene_.background.empty() ? -1 : program_index(scene_.background, {}, options, session)};
   for (const SceneObject& object : scene_.objects)
     program_of_.push_back(program_index(object.program, object.knobs, options, session));
 }
@@ -141,8 +139,7 @@ void Surfaces::load(const RenderOptions& options, Session& session) {
     const auto made = [&] {
       if (!surface::is_field_name(object.shape.shape))
         return surface::make_shape(object.shape, options.scene.empty());
-      functions_.push_back(
-          std::make_unique<SpaceFunction>(object.shape.shape, options, session));
+      functions_.push_back(std::make_unique<SpaceFunction>(object.shape.shape, options, session));
       return surface::make_field_shape(object.shape, functions_.back()->field());
     }();
     if (!made) {
@@ -150,8 +147,8 @@ void Surfaces::load(const RenderOptions& options, Session& session) {
       if (scene_.path.empty())
         throw Failure(error.usage ? Exit::usage : Exit::input,
                       (error.usage ? "--on: " : "") + error.message, error.hint);
-      throw Failure(Exit::input,
-                    fmt::format("{}:{}: {}", scene_.path, error.line, error.message), error.hint);
+      throw Failure(Exit::input, fmt::format("{}:{}: {}", scene_.path, error.line, error.message),
+                    error.hint);
     }
     for (const std::string& note : made->notes) console_.warning("mesh", note);
     shapes_.push_back(made->shape);
@@ -178,8 +175,7 @@ int Surfaces::program_index(const std::string& written, const std::vector<KnobSe
   };
   const auto found = std::find_if(requests_.begin(), requests_.end(), same);
   if (found != requests_.end()) return static_cast<int>(found - requests_.begin());
-  if (!request.file.empty())
-    identities_.emplace_back(request.file, file_identity(request.file));
+  if (!request.file.empty()) identities_.emplace_back(request.file, file_identity(request.file));
   requests_.push_back(std::move(request));
   return static_cast<int>(requests_.size()) - 1;
 }
@@ -205,8 +201,7 @@ Surfaces::Joined Surfaces::join(const std::vector<std::shared_ptr<const Program>
   return joined;
 }
 
-antialias::Programs Surfaces::combine(std::vector<SurfaceProgram> programs,
-                                      antialias::Mode mode) {
+antialias::Programs Surfaces::combine(std::vector<SurfaceProgram> programs, antialias::Mode mode) {
   programs_ = std::move(programs);
   using List = std::vector<std::shared_ptr<const Program>>;
   List shown, quiet, edges, conditions;
@@ -327,7 +322,7 @@ void Surfaces::begin_stored_frame() {
   if (!picture) throw Failure(Exit::input, picture.error().message);
   for (const std::string& what :
        surface::clear_broken_pixels(*picture, layers_, bare->layers, bare->reader.spec()))
-    console_.warning(bare->file + ": " + what);
+    console_.warning("not-finite", bare->file + ": " + what);
   picture_ = std::make_shared<const image::Image>(std::move(*picture));
   picture_of_ = std::move(of);
 }
@@ -337,7 +332,7 @@ void Surfaces::warn_inside(const surface::Camera& camera) {
   if (around.empty() || warned_) return;
   warned_ = true;
   console_.warning("inside", fmt::format("the camera is inside {}: what is seen is its back",
-                               fmt::join(around, ", ")));
+                                         fmt::join(around, ", ")));
 }
 
 // Once, of the first frame in which something is not to be seen.
@@ -346,9 +341,8 @@ void Surfaces::warn_unseen() {
     const std::string why = shapes_[i]->why_unseen();
     if (why.empty()) continue;
     warned_unseen_ = true;
-    console_.warning(
-        "unseen",
-        fmt::format("nothing is seen of {}: {}", scene_.objects[i].shape.shape, why));
+    console_.warning("unseen",
+                     fmt::format("nothing is seen of {}: {}", scene_.objects[i].shape.shape, why));
   }
 }
 
@@ -366,14 +360,16 @@ void Surfaces::warn_too_thin() {
     warned_thin_ = true;
     const std::string& name = scene_.objects[i].shape.shape;
     if (is_huge)
-      console_.warning(fmt::format(
-          "{} is {:.2g} m wide, and rays meet nothing larger than {:.0g} m; scale it down", name,
-          thick, largest_size));
+      console_.warning(
+          "unseen",
+          fmt::format(
+              "{} is {:.2g} m wide, and rays meet nothing larger than {:.0g} m; scale it down",
+              name, thick, largest_size));
     else
-      console_.warning(fmt::format(
-          "little or nothing is seen of {}: it is {:.2g} m thick where a pixel is {:.2g} m wide; "
-          "make it larger, or come nearer with the camera",
-          name, thick, pixel));
+      console_.warning("unseen", fmt::format("little or nothing is seen of {}: it is {:.2g} m "
+                                             "thick where a pixel is {:.2g} m wide; "
+                                             "make it larger, or come nearer with the camera",
+                                             name, thick, pixel));
   }
 }
 

@@ -209,7 +209,8 @@ Json volume_json(const std::string& name, const std::vector<GridFacts>& grids) {
 
 Exit info_command(Session& session) {
   const auto& names = session.arguments.positionals;
-  if (names.empty()) throw usage_error("info needs a program, an image or a volume", "pse info FILE...");
+  if (names.empty())
+    throw usage_error("info needs a program, an image or a volume", "pse info FILE...");
   const bool as_json = session.arguments.has("json");
   Json all = Json::array();
   for (const std::string& name : names) {

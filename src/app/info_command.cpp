@@ -1,8 +1,11 @@
-// `pse info`: what is in a program or an image.
+// `pse info`: what is in a program, an image or a volume.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
 #include <nlohmann/json.hpp>
 
 #include "app/knobs.h"
@@ -11,6 +14,7 @@
 #include "app/stats.h"
 #include "image/compare.h"
 #include "passes/pipeline.h"
+#include "volume/vdb.h"
 
 namespace pse::app {
 namespace {
@@ -139,17 +143,85 @@ Json image_json(const std::string& name, const image::ImageSpec& spec) {
   return json;
 }
 
+// A grid, and of those that can be read the side of a voxel and the range of the values.
+struct GridFacts {
+  volume::GridInfo head;
+  double voxel = 0;
+  std::optional<std::pair<float, float>> range;  // the background is one of the values
+};
+
+template <class Value>
+Value taken(volume::Result<Value> result) {
+  if (!result) throw Failure(Exit::input, result.error().message);
+  return std::move(*result);
+}
+
+std::vector<GridFacts> examine_volume(const std::string& file) {
+  constexpr std::size_t limit = std::size_t{8} << 30;
+  volume::Vdb* const vdb = taken(volume::open_vdb());
+  std::vector<GridFacts> all;
+  for (const volume::GridInfo& head : taken(vdb->info(file)).grids) {
+    GridFacts facts{.head = head};
+    if (head.components > 0) {
+      const volume::GridData data = taken(vdb->read(file, head.name, limit));
+      facts.voxel = 1 / std::hypot(data.to_index[0], data.to_index[1], data.to_index[2]);
+      std::pair<float, float> range{INFINITY, -INFINITY};
+      for (const auto* values : {&data.voxels, &data.even})
+        for (const float value : *values)
+          range = {std::fmin(range.first, value), std::fmax(range.second, value)};
+      if (range.first <= range.second) facts.range = range;
+    }
+    all.push_back(std::move(facts));
+  }
+  return all;
+}
+
+const char* class_of(const volume::GridInfo& grid) {
+  if (grid.kind == volume::GridKind::fog) return "fog volume";
+  return grid.kind == volume::GridKind::level_set ? "level set" : "data";
+}
+
+std::string volume_text(const std::string& name, const std::vector<GridFacts>& grids) {
+  std::string out = fmt::format("{}: volume\n", name);
+  for (const auto& [head, voxel, range] : grids) {
+    out += fmt::format("  {}: {}, {}\n", head.name, head.type, class_of(head));
+    out += fmt::format("    voxels  {} with values, [{}] to [{}]\n", head.active,
+                       fmt::join(head.low, " "), fmt::join(head.high, " "));
+    if (voxel > 0) out += fmt::format("    side    {:.6g} m\n", voxel);
+    if (range) out += fmt::format("    values  {:.6g} to {:.6g}\n", range->first, range->second);
+  }
+  return out;
+}
+
+Json volume_json(const std::string& name, const std::vector<GridFacts>& grids) {
+  Json json = {{"file", name}, {"kind", "volume"}, {"grids", Json::array()}};
+  for (const auto& [head, voxel, range] : grids) {
+    Json grid = {{"name", head.name},     {"type", head.type}, {"class", class_of(head)},
+                 {"active", head.active}, {"low", head.low},   {"high", head.high}};
+    if (voxel > 0) grid["voxel"] = voxel;
+    if (range) grid["range"] = {range->first, range->second};
+    json["grids"].push_back(std::move(grid));
+  }
+  return json;
+}
+
 }  // namespace
 
 Exit info_command(Session& session) {
   const auto& names = session.arguments.positionals;
-  if (names.empty()) throw usage_error("info needs a program or an image", "pse info FILE...");
+  if (names.empty())
+    throw usage_error("info needs a program, an image or a volume", "pse info FILE...");
   const bool as_json = session.arguments.has("json");
   Json all = Json::array();
   for (const std::string& name : names) {
     if (name.ends_with(".pse")) {
       const ProgramInfo info = examine_program(name, session);
       as_json ? all.push_back(program_json(info)) : session.console.print(program_text(info));
+    } else if (name.ends_with(".vdb")) {
+      const std::string file = session.find_file(name);
+      const std::vector<GridFacts> grids = examine_volume(file);
+      as_json ? all.push_back(volume_json(file, grids))
+              : session.console.print(volume_text(file, grids));
     } else {
       const std::string file = session.find_file(name);
       const image::ImageSpec spec = examine_image(file);

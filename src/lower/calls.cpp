@@ -79,7 +79,25 @@ Typed Lowering::lower_call(const CallExpr& call, const Span& span) {
     });
   }
   builder_->set_span(span);
-  return call_function(*function, std::move(arguments), span, name);
+  Typed result = call_function(*function, std::move(arguments), span, name);
+  // What the library takes as a density is one number, or true or false.
+  const bool usable =
+      result.is_error() || result.kind == Kind::number || result.kind == Kind::boolean;
+  if (passed && function->definition && offered && name == "density" && !usable) {
+    const FunctionStmt& given = *function->definition;
+    const bool known_bad = std::ranges::any_of(diagnostics_->all(), [&](const Diagnostic& earlier) {
+      return earlier.severity == Severity::error && earlier.span == given.name_span;
+    });
+    // Asked for at many places of the library, it is wrong once.
+    if (known_bad) return {};
+    error("density", given.name_span,
+          "`" + given.name + "` is used as a density and has to return one number, " +
+              (result.kind == Kind::nothing ? "it returns nothing"
+                                            : "it returns " + describe(result)),
+          "0 where space is empty, 1 where it is solid, what is between where it is thin");
+    return {};
+  }
+  return result;
 }
 
 Typed Lowering::call_function(const FunctionRef& function, std::vector<CallArgument> arguments,

@@ -38,6 +38,12 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"a = \"x\" * 2", "1:operand-types: `*` does not work on a text and a number"},
         Case{"if [1 2]\n  a = 1",
              "1:not-a-condition: a condition is a truth value or a number, this is a vector of 2"},
+        Case{"function rock(p)\n  return p\na = density_normal(rock, [0 0 1])",
+             "1:density: `rock` is used as a density and has to return one number, it returns a "
+             "vector of 3"},
+        Case{"function rock(p)\n  q = p\na = density_normal(rock, [0 0 1])",
+             "1:density: `rock` is used as a density and has to return one number, it returns "
+             "nothing"},
         Case{"function f(x)\n  return f(x)\na = f(1)", "2:recursion: `f` calls itself"},
         Case{"function f(x)\n  return g(x)\nfunction g(x)\n  return f(x)\na = f(1)",
              "4:recursion: `f` calls itself through `g`"},

@@ -217,6 +217,19 @@ TEST_F(Bake, MemoryIsBounded) {
   EXPECT_FALSE(exists("a.vdb"));
 }
 
+TEST_F(Bake, InfoTellsOfGrids) {
+  bake("density = length(point) < 1 ? 0.5 : 0\n", {"--res", "16"});
+  Ended told = pse({"info", "a.vdb"});
+  EXPECT_EQ(told.status, 0) << told.err;
+  for (const char* part : {"density: float, fog volume", "with values", "values  0 to 0.5"})
+    EXPECT_TRUE(contains(told.out, part)) << told.out;
+  EXPECT_TRUE(contains(pse({"info", "--json", "a.vdb"}).out, "\"kind\": \"volume\""));
+  file("cut.vdb", read("a.vdb").substr(0, 700));
+  told = pse({"info", "cut.vdb"});
+  EXPECT_EQ(told.status, 4);
+  EXPECT_TRUE(contains(told.err, "damaged")) << told.err;
+}
+
 TEST_F(Bake, SequencesResumeAndRefuseOneName) {
   file("a.pse", "density = max(0, 0.5 + 0.25 * frame - length(point))\n");
   ASSERT_EQ(pse({"bake", "a.pse", "-f", "1-3", "-o", "a.%04d.vdb", "--res", "16"}).status, 0);

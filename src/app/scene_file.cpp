@@ -145,10 +145,16 @@ std::string knob_text_of(const toml::node& node) {
 SceneObject read_object(Reader reader, const std::string& file) {
   SceneObject object;
   object.line = reader.line();
-  if (!reader.text("shape", object.shape.shape))
+  std::string words;
+  if (!reader.text("shape", words))
     reader.fail(reader.line(), "an object needs a `shape`",
                 R"(shape = "sphere", or a mesh: shape = "bunny.obj")");
+  // As behind --on, settings may stand in the same words.
+  auto shape = surface::parse_shape(words);
+  if (!shape) reader.fail(reader.line(), shape.error().message, shape.error().hint);
+  object.shape = std::move(*shape);
   object.shape.line = object.line;
+  for (surface::Setting& setting : object.shape.settings) setting.line = object.line;
   object.name = object.shape.shape;
   reader.text("name", object.name);
   reader.text("program", object.program);

@@ -52,6 +52,23 @@ TEST_F(Surfaces, TheMiddleOfASphere) {
   EXPECT_GT(at(out, "P.X", 19, 16), 0.05);
 }
 
+TEST_F(Surfaces, SettingsOfAScenesShapeAreKeysOrWords) {
+  file("p.pse", "color = white * depth\n");
+  const std::string camera = "[camera]\neye = [1, 2, 3]\ntarget = [0, 0, 0]\n[[object]]\n";
+  file("keys.toml", camera + "shape = \"torus\"\nmajor = 0.9\nminor = 0.2\n");
+  file("words.toml", camera + "shape = \"torus major=0.9 minor=0.2\"\n");
+  const image::Image keys = render({"p.pse", "--scene", "keys.toml", "--res", "24x24"}, "k.exr");
+  const image::Image words = render({"p.pse", "--scene", "words.toml", "--res", "24x24"}, "w.exr");
+  float covered = 0;
+  for (int y = 0; y < 24; ++y)
+    for (int x = 0; x < 24; ++x) {
+      covered += at(keys, "A", x, y);
+      EXPECT_EQ(at(keys, "R", x, y), at(words, "R", x, y));
+    }
+  EXPECT_GT(covered, 20);
+  expect_refused(camera + "shape = \"torus minor=wide\"\n", "bad.toml:4: `minor=wide` is no setting");
+}
+
 TEST_F(Surfaces, TilesThreadsWidthsAndTheInterpreterAgree) {
   file("p.pse", everything);
   file("mirror.pse",

@@ -1,8 +1,8 @@
 // Procedural antialiasing (2002 chapter, "Antialiased rendering of procedural textures"): a program
 // run over a picture with clean edges at about one sample per pixel. The table of contents:
 //
-//   decisions  where the program's conditionals are, and what has none and jumps (seams); loops that
-//              march (searches); what is chance and none of them (dither)
+//   decisions  where the program's conditionals are, and what has none and jumps (seams); loops
+//              that march (searches); what is chance and none of them (dither)
 //   path       the program with one more output: which way each sample takes; and where it marches
 //              by a loop, one of what that ended with
 //   fine       noise that is finer than a pixel

@@ -18,8 +18,9 @@ inline constexpr int one_crease = 8, bits_of_counts = 6;
 // Adds the output "$path" to a module fresh from the lowering: a whole number from 0 to 2^24 - 1
 // that hashes the outcomes of all jumps and the turns of all loops; of loops that search, the
 // outcomes of the last turn. Where there are such loops, adds "$ends" too: a sum of what they end
-// with, each by the logarithm of its size, which jumps where one of them does. Where there is noise that may be finer than a
-// pixel, adds "$fine" last: how far such noise's place moves from pixel to pixel (move_squared()).
+// with, each by the logarithm of its size, which jumps where one of them does. Where there is noise
+// that may be finer than a pixel, adds "$fine" last: how far such noise's place moves from pixel to
+// pixel (move_squared()).
 // The other outputs keep their bits.
 void add_path(ir::Module& module, const Decisions& decisions);
 

@@ -1,6 +1,6 @@
 // What is done for many pixels at once: the same results, for different instructions. The bodies
-// are in neighbours.h, fine_steps.h, crossing_steps.h and sample_steps.h, and steps_any.cpp and its like compile
-// them.
+// are in neighbours.h, fine_steps.h, crossing_steps.h and sample_steps.h, and steps_any.cpp and its
+// like compile them.
 #pragma once
 
 #include "antialias/crossings.h"

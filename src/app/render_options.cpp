@@ -78,7 +78,8 @@ void check_settings_are_with_shape(const RenderOptions& options) {
         !std::filesystem::exists(image.file))
       throw usage_error(fmt::format("`{0}={1}` is taken for an image, and there is no file {1}",
                                     image.name, image.file),
-                        fmt::format("a setting of the shape stands with it in quotes: --on \"{} {}={}\"",
+                        fmt::format("a setting of the shape stands with it in quotes: "
+                                    "--on \"{} {}={}\"",
                                     options.on, image.name, image.file));
 }
 

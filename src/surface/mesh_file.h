@@ -1,5 +1,6 @@
-// A look at a mesh file before it is read: what it is, and how much is in it. The library for meshes
-// takes many times a file's size in memory, so what is too large for it is refused by its own count.
+// A look at a mesh file before it is read: what it is, and how much is in it. The library for
+// meshes takes many times a file's size in memory, so what is too large for it is refused by its
+// own count.
 #pragma once
 
 #include <cstddef>

@@ -37,8 +37,8 @@ struct ShapeError {
 
 // "torus minor=0.3" taken apart; numbers of a list are divided by commas.
 std::expected<ShapeSpec, ShapeError> parse_shape(const std::string& words);
-// "superquadric:north=2" as it is written, with a setting, in quotes; empty where no shape's name or
-// mesh comes first.
+// "superquadric:north=2" as it is written, with a setting, in quotes; empty where no shape's name
+// or mesh comes first.
 std::string quoted_settings(const std::string& words);
 bool has_setting(const std::string& shape, const std::string& key);
 // The names of shapes, and their settings with what they are unless told.

@@ -98,6 +98,11 @@ bool CommandLine::exists(const std::string& name) const {
   return std::filesystem::exists(folder_ / name);
 }
 
+void CommandLine::make_input(const std::string& name) {
+  file("make.pse", "color = [u v 0.25]\nZ = px\n");
+  ASSERT_EQ(pse({"render", "make.pse", "-o", name, "--res", "4x2", "--float"}).status, 0);
+}
+
 image::Image CommandLine::picture(const std::string& name) const {
   auto read = image::read_image((folder_ / name).string());
   EXPECT_TRUE(read) << read.error().message;

@@ -36,6 +36,8 @@ class CommandLine : public ::testing::Test {
   std::string file(const std::string& name, const std::string& text);
   std::string read(const std::string& name) const;
   bool exists(const std::string& name) const;
+  // Writes an EXR of 4x2 pixels with color = [u v 0.25] and Z = px.
+  void make_input(const std::string& name);
   // An image of the folder.
   image::Image picture(const std::string& name) const;
   std::filesystem::path folder() const { return folder_; }

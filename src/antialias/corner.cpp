@@ -23,8 +23,8 @@ constexpr std::size_t of_sides(bool first, bool second) {
 
 std::uint8_t Corner::region(float x, float y) const {
   const float first = distance(lines_.first, x, y), second = distance(lines_.second, x, y);
-  if (std::min(std::abs(first), std::abs(second)) < margin) return unsure;
-  return static_cast<std::uint8_t>(of_sides(first > 0, second > 0));
+  const bool is_unsure = std::min(std::abs(first), std::abs(second)) < margin;
+  return static_cast<std::uint8_t>(of_sides(first > 0, second > 0) | (is_unsure ? unsure : 0u));
 }
 
 std::array<float, 4> Corner::weights(const Filter& filter, const Offsets& offsets) const {

@@ -25,7 +25,8 @@ class Corner {
  public:
   explicit Corner(const Lines& lines) : lines_(lines) {}
 
-  // The region of a place, 0 to 3; unsure where it is so near to a line that it may lie beyond it.
+  // The region of a place, 0 to 3; with the bit `unsure` where it is so near to a line that it may
+  // lie beyond it.
   static constexpr std::uint8_t unsure = 4;
   std::uint8_t region(float x, float y) const;
 

@@ -95,7 +95,7 @@ const Planes& PlaceRunner::inputs(Work& work) const {
 }
 
 const Results& PlaceRunner::run(Work& work, RunStatus& status) const {
-  const std::size_t count = work.places.size(), outputs = program_.module().outputs.size();
+  const std::size_t count = work.places.count, outputs = program_.module().outputs.size();
   const std::span<const double> x = work.places.x, y = work.places.y;
   work.results.resize(outputs, count);
   const std::span<float* const> in = inputs(work).pointers();

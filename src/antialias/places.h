@@ -15,9 +15,12 @@ namespace pse::antialias {
 
 // Places in pixels of the whole picture.
 struct Places {
-  std::vector<double> x, y;
-  std::size_t size() const { return x.size(); }
-  void resize(std::size_t count) { x.resize(count), y.resize(count); }
+  std::vector<double> x, y;  // what lies behind `count` has no meaning
+  std::size_t count = 0;
+  void resize(std::size_t places) {
+    count = places;
+    if (x.size() < count) x.resize(count), y.resize(count);
+  }
 };
 
 // results[o][i]: output o of the program at place i.

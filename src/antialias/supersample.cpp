@@ -102,37 +102,53 @@ void Refiner::add_means(std::span<const Pixel> pixels, std::uint32_t count, Refi
 }
 
 // The pixel's values from samples of each region of two edges; false where the samples of a region
-// disagree or there are none.
+// disagree, or of a large one there are none.
 bool Refiner::by_regions(const Unclear& pixel, std::uint32_t look, const Results& results,
                          std::size_t at, std::span<float> values) const {
-  constexpr float least_weight = 0.004f;
+  constexpr float least_weight = 0.004f, most_unseen = 0.1f;
   const float reach = options_.filter.reach();
   if (!pixel.lines.are_within(reach)) return false;
   const Offsets offsets = patterns_.of(pixel.pixel.x, pixel.pixel.y);
   const Corner corner(pixel.lines);
-  std::array<std::uint32_t, 4> counts{};
+  // Those of whose region we are sure, then the others.
+  std::array<std::uint32_t, 2 * Corner::unsure> counts{};
   std::array<float, 4> paths{};
   const float* path = results[outputs_] + at;
   std::array<std::uint8_t, corner_look> regions{};
   for (std::uint32_t k = 0; k < look; ++k) {
     const std::uint8_t region = regions[k] = corner.region(offsets.x[k], offsets.y[k]);
-    if (region == Corner::unsure) continue;
-    if (counts[region]++ == 0) paths[region] = path[k];
-    if (paths[region] != path[k]) return false;
+    if (counts[region]++ == 0 && region < Corner::unsure) paths[region] = path[k];
+    if (region < Corner::unsure && paths[region] != path[k]) return false;
   }
+  // Where another goes a way of its own there is more than the two edges.
+  for (std::uint32_t k = 0; k < look; ++k) {
+    const std::size_t region = regions[k] % Corner::unsure;
+    if (regions[k] == region || counts[region] == 0) continue;
+    bool is_known = false;
+    for (std::size_t r = 0; r < 4; ++r) is_known |= counts[r] > 0 && paths[r] == path[k];
+    if (!is_known) return false;
+  }
+
+  // A narrow region that no sample is sure to be in: those that may be, else what is beside it, as
+  // for a ramp.
   std::array<float, 4> weights = corner.weights(options_.filter, offsets);
+  std::array<std::size_t, 4> from = {0, 1, 2, 3};
   float total = 0;
   for (std::size_t r = 0; r < 4; ++r) {
-    if (counts[r] == 0 && weights[r] > least_weight) return false;
-    if (counts[r] == 0) weights[r] = 0;
-    total += weights[r];
+    if (counts[r] == 0) from[r] |= Corner::unsure;
+    if (counts[r] > 0 || weights[r] <= least_weight || counts[from[r]] > 0) continue;
+    const std::size_t a = r ^ 1, b = r ^ 2;
+    if (weights[r] > most_unseen || counts[a] == 0 || counts[b] == 0) return false;
+    weights[a] += weights[r] / 2, weights[b] += weights[r] / 2;
   }
+  for (std::size_t r = 0; r < 4; ++r) total += counts[from[r]] > 0 ? weights[r] : 0;
   for (std::size_t o = 0; o < outputs_; ++o) {
-    std::array<float, 5> sums{};
+    std::array<float, counts.size()> sums{};
     for (std::uint32_t k = 0; k < look; ++k) sums[regions[k]] += results[o][at + k];
     float value = 0;
     for (std::size_t r = 0; r < 4; ++r)
-      if (counts[r] > 0) value += weights[r] / total * (sums[r] / static_cast<float>(counts[r]));
+      if (const std::size_t of = from[r]; counts[of] > 0)
+        value += weights[r] / total * (sums[of] / static_cast<float>(counts[of]));
     values[o] = value;
   }
   return true;
@@ -156,7 +172,8 @@ Range Refiner::range_around(const Tile& tile, const Pixel& pixel, std::size_t ou
 
 // Samples in steps, each as many as before it together. Narrow pixels whose first samples show
 // nothing stay as they are; those whose samples confirm two edges are put together from their
-// regions. Half of the samples are enough, but for outlines: theirs are long, and nothing else
+// regions. A quarter of the samples is enough where the program's edges are known; half where a
+// loop marches or the edges are too many; all for outlines: theirs are long, and nothing else
 // smooths them.
 void Refiner::settle(const Tile& tile, Refined& result, Counts& counts, Work& work,
                      RunStatus& status) const {
@@ -175,6 +192,7 @@ void Refiner::settle(const Tile& tile, Refined& result, Counts& counts, Work& wo
     ++counts.supersampled;
   };
 
+  const bool marches = tile.ends() != nullptr;
   std::vector<std::size_t> kept, now;
   std::vector<Pixel> pixels;
   // The samples [first, last) of the pixels `now`; those that need more are kept.
@@ -206,12 +224,13 @@ void Refiner::settle(const Tile& tile, Refined& result, Counts& counts, Work& wo
         uneven = uneven || is_uneven(range.with(around), last);
       }
       if (!more) return;
-      const std::uint32_t most = pixel.silhouette ? count : std::max(look, count / 2);
-      if (!uneven || last >= most)
-        done(i, sum, static_cast<float>(last));
-      else if (first == 0 && last == look &&
-               by_regions(unclear[i], look, results, s * each, values))
+      const std::uint32_t part = pixel.silhouette ? 1 : pixel.untold || marches ? 2 : 4;
+      const std::uint32_t most = std::max(look, count / part);
+      if (uneven && first == 0 && last == look &&
+          by_regions(unclear[i], look, results, s * each, values))
         done(i, values.data(), 1);
+      else if (!uneven || last >= most)
+        done(i, sum, static_cast<float>(last));
       else
         kept.push_back(i);
     };

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <cstring>
 
-#ifdef __AVX__
+#ifdef __SSE2__
 #include <immintrin.h>
 #endif
 
@@ -91,6 +91,10 @@ template <class A>
 #ifdef __AVX__
   if constexpr (sizeof(A) == sizeof(__m256))
     return static_cast<std::uint32_t>(_mm256_movemask_ps(__builtin_bit_cast(__m256, answers)));
+#endif
+#ifdef __SSE2__
+  if constexpr (sizeof(A) == sizeof(__m128))
+    return static_cast<std::uint32_t>(_mm_movemask_ps(__builtin_bit_cast(__m128, answers)));
 #endif
   std::uint32_t mask = 0;
   for (std::size_t k = 0; k < lanes_of<A>; ++k) mask |= (answers[k] & 1u) << k;

@@ -62,7 +62,8 @@ class Search {
       : tile_(tile),
         room_(room),
         width_(tile.area.width()),
-        samples_(width_ * tile.area.height()),
+        groups_((tile.rect.width() + at_once - 1) / at_once),
+        apart_(groups_ * tile.area.height()),
         path_(tile.path()),
         ends_(tile.ends()) {
     std::ptrdiff_t* step = steps_;
@@ -72,15 +73,14 @@ class Search {
   }
 
   [[gnu::always_inline]] std::size_t run() const {
-    see_changes_along_rows();
+    see_changes();
     Pixel* next = room_.found;
     const std::ptrdiff_t width = tile_.rect.width();
-    std::int32_t* changes = room_.changes + samples_;
+    std::ptrdiff_t group = reach * groups_;
     for (int y = tile_.rect.y0; y < tile_.rect.y1; ++y) {
       const auto first = static_cast<std::ptrdiff_t>(tile_.at(tile_.rect.x0, y));
-      if (!see_changes(first, width, changes)) continue;
-      for (std::ptrdiff_t i = 0; i < width; i += at_once) {
-        if (!any(load<Answers>(changes + i))) continue;
+      for (std::ptrdiff_t i = 0; i < width; i += at_once, ++group) {
+        if (changes_around(group) == 0) continue;
         const Seen seen = look(first + i);
         std::uint32_t wanted = mask_of(seen.edge | seen.narrow | seen.hidden);
         if (width - i < at_once) wanted &= (1u << (width - i)) - 1;
@@ -114,29 +114,35 @@ class Search {
     return ends_ == nullptr ? change : change | end_apart(here, there);
   }
 
-  // For all samples of the area: not 0 where the path changes along the row within reach.
-  [[gnu::always_inline]] void see_changes_along_rows() const {
-    for (std::ptrdiff_t i = reach; i + reach < samples_; i += at_once) {
-      Answers change{};
-      for (int k = 1; k <= reach; ++k) change |= changes(i, i - k) | changes(i, i + k);
-      store(room_.changes + i, change);
+  // For each group of `count` samples in the tile's columns, of all rows of the area: a bit for each
+  // where the path changes along the row within reach; likewise from here to each row below.
+  [[gnu::always_inline]] void see_changes() const {
+    const int rows = tile_.area.height();
+    std::uint16_t* to = room_.changes;
+    for (int row = 0; row < rows; ++row) {
+      const std::ptrdiff_t first = row * width_ + reach;
+      for (std::ptrdiff_t group = 0; group < groups_; ++group, ++to) {
+        const std::ptrdiff_t here = first + group * at_once;
+        Answers change{};
+        for (int k = 1; k <= reach; ++k) change |= changes(here, here - k) | changes(here, here + k);
+        *to = static_cast<std::uint16_t>(mask_of(change != 0));
+        for (int k = 1; k <= reach; ++k)
+          to[k * apart_] = row + k < rows ? static_cast<std::uint16_t>(mask_of(
+                                                changes(here, here + k * width_) != 0))
+                                          : std::uint16_t{0};
+      }
     }
   }
 
-  // For the samples of a row: not 0 where the path changes within reach. Whether there is any.
-  [[gnu::always_inline]] bool see_changes(std::ptrdiff_t first, std::ptrdiff_t width,
-                                          std::int32_t* changes) const {
-    Answers any_change{};
-    for (std::ptrdiff_t i = 0; i < width; i += at_once) {
-      const std::ptrdiff_t at = first + i;
-      Answers change = load<Answers>(room_.changes + at);
-      for (std::ptrdiff_t k = width_; k <= reach * width_; k += width_)
-        change |= this->changes(at, at - k) | load<Answers>(room_.changes + at - k) |
-                  this->changes(at, at + k) | load<Answers>(room_.changes + at + k);
-      store(changes + i, change);
-      any_change |= change;
+  // Where the path changes within reach.
+  [[gnu::always_inline]] std::uint32_t changes_around(std::ptrdiff_t group) const {
+    const std::uint16_t* at = room_.changes + group;
+    std::uint32_t change = *at;
+    for (int k = 1; k <= reach; ++k) {
+      const std::ptrdiff_t above = -k * groups_, below = k * groups_;
+      change |= at[above] | at[below] | at[k * apart_] | at[k * apart_ + above];
     }
-    return any(any_change);
+    return change;
   }
 
   // Values pixels in a row; what is said of those behind the row's end has no meaning.
@@ -247,7 +253,8 @@ class Search {
 
   const Tile& tile_;
   const SearchRoom& room_;
-  const std::ptrdiff_t width_, samples_;
+  const std::ptrdiff_t width_, groups_;  // of a row
+  const std::ptrdiff_t apart_;           // groups of the area
   const float* const path_;
   const float* const ends_;                        // null: there are none
   std::ptrdiff_t steps_[2 * reach * (reach + 1)];  // to one of each two opposite neighbours

@@ -8,11 +8,11 @@
 
 namespace pse::antialias {
 
-// Room for the search: `changes` for the samples of the area and of one row more, `found` for the
-// pixels of the tile; each with `beyond` more.
+// Room for the search: `changes` for the samples of the area, `found` for the pixels of the tile
+// and `beyond` more.
 struct SearchRoom {
   static constexpr std::size_t beyond = 16;
-  std::int32_t* changes;
+  std::uint16_t* changes;
   Pixel* found;
 };
 

@@ -61,7 +61,7 @@ std::span<const Pixel> find_fine_pixels(const Tile& tile, std::vector<Pixel>& fo
 
 // Memory of find_edge_pixels(), used again from tile to tile.
 struct Found {
-  std::vector<std::int32_t> changes;
+  std::vector<std::uint16_t> changes;
   std::vector<Pixel> pixels;
 };
 

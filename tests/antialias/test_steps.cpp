@@ -69,8 +69,7 @@ TEST_F(StepsOfAntialiasing, SearchForTheSamePixels) {
         if (has_ends) tile.ids = ids.data();
         std::vector<std::vector<Pixel>> found;
         for (const Steps* steps : runnable()) {
-          std::vector<std::int32_t> changes(samples + static_cast<std::size_t>(tile.area.width()) +
-                                            SearchRoom::beyond);
+          std::vector<std::uint16_t> changes(samples);
           std::vector<Pixel> pixels(samples + SearchRoom::beyond);
           pixels.resize(steps->search[static_cast<std::size_t>(reach) - 1](
               tile, {changes.data(), pixels.data()}));
@@ -103,7 +102,7 @@ TEST_F(StepsOfAntialiasing, WhatIsNoEdgeIsNotUntold) {
   float* const planes[] = {values.data(), path.data()};
   tile.planes = planes;
   for (const Steps* steps : runnable()) {
-    std::vector<std::int32_t> changes(samples + 64);
+    std::vector<std::uint16_t> changes(samples);
     std::vector<Pixel> found(samples + 64);
     found.resize(steps->search[0](tile, {changes.data(), found.data()}));
     int narrow = 0, edges = 0;

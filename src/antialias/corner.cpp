@@ -4,14 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "antialias/lanes.h"
+
 namespace pse::antialias {
 namespace {
 
 // Edges bend a little: nearer than this to a line, in pixels, a sample may be on either side.
 constexpr float margin = 0.04f;
 
-float distance(const Line& line, float x, float y) {
-  return line.distance + (line.nx * x + line.ny * y);
+Four distance(const Line& line, const Offsets& offsets, std::size_t k) {
+  return line.distance + (line.nx * load<Four>(&offsets.x[k]) + line.ny * load<Four>(&offsets.y[k]));
 }
 
 // Regions are numbered by the sides of the first and of the second line.
@@ -21,22 +23,37 @@ constexpr std::size_t of_sides(bool first, bool second) {
 
 }  // namespace
 
-std::uint8_t Corner::region(float x, float y) const {
-  const float first = distance(lines_.first, x, y), second = distance(lines_.second, x, y);
-  const bool is_unsure = std::min(std::abs(first), std::abs(second)) < margin;
-  return static_cast<std::uint8_t>(of_sides(first > 0, second > 0) | (is_unsure ? unsure : 0u));
+Corner::Regions Corner::regions(const Offsets& offsets) const {
+  std::uint32_t on_first = 0, on_second = 0, unsure = 0;
+  for (std::size_t k = 0; k < offsets.size(); k += four) {
+    const Four first = distance(lines_.first, offsets, k);
+    const Four second = distance(lines_.second, offsets, k);
+    on_first |= mask_of(first > 0) << k, on_second |= mask_of(second > 0) << k;
+    unsure |= mask_of(smaller(size(first), size(second)) < margin) << k;
+  }
+  Regions found;
+  const std::uint32_t all = ~0u >> (32 - offsets.size());
+  for (const bool first : {false, true})
+    for (const bool second : {false, true}) {
+      const std::uint32_t in = (first ? on_first : ~on_first) & (second ? on_second : ~on_second);
+      found.sure[of_sides(first, second)] = in & ~unsure & all;
+      found.unsure[of_sides(first, second)] = in & unsure & all;
+    }
+  return found;
 }
 
 std::array<float, 4> Corner::weights(const Filter& filter, const Offsets& offsets) const {
   // Places in each region.
-  std::int32_t first = 0, second = 0, both = 0;
-  for (std::size_t k = 0; k < offsets.size(); ++k) {
-    const float x = offsets.x[k], y = offsets.y[k];
-    const std::int32_t a = distance(lines_.first, x, y) > 0 ? 1 : 0;
-    const std::int32_t b = distance(lines_.second, x, y) > 0 ? 1 : 0;
-    first += a, second += b, both += a & b;
+  AnswersOf<Four> of_first{}, of_second{}, of_both{};
+  const std::size_t whole = offsets.size() / four * four;
+  for (std::size_t k = 0; k < whole; k += four) {
+    const auto a = distance(lines_.first, offsets, k) > 0;
+    const auto b = distance(lines_.second, offsets, k) > 0;
+    of_first -= a, of_second -= b, of_both -= a & b;
   }
-  const auto count = static_cast<std::int32_t>(offsets.size());
+  const auto sum = [](const AnswersOf<Four>& of) { return of[0] + of[1] + of[2] + of[3]; };
+  const std::int32_t first = sum(of_first), second = sum(of_second), both = sum(of_both);
+  const auto count = static_cast<std::int32_t>(whole);
   std::array<float, 4> weights{};
   weights[of_sides(true, true)] = static_cast<float>(both);
   weights[of_sides(true, false)] = static_cast<float>(first - both);

@@ -25,10 +25,12 @@ class Corner {
  public:
   explicit Corner(const Lines& lines) : lines_(lines) {}
 
-  // The region of a place, 0 to 3; with the bit `unsure` where it is so near to a line that it may
-  // lie beyond it.
-  static constexpr std::uint8_t unsure = 4;
-  std::uint8_t region(float x, float y) const;
+  // The places in each region, of up to 32: bit k is place k. Those that are so near to a line that
+  // they may lie beyond it stand apart.
+  struct Regions {
+    std::array<std::uint32_t, 4> sure, unsure;
+  };
+  Regions regions(const Offsets& offsets) const;
 
   // The kernel's weights of the regions. `offsets`: places that follow the kernel.
   std::array<float, 4> weights(const Filter& filter, const Offsets& offsets) const;

@@ -7,6 +7,7 @@ namespace pse::antialias {
 namespace {
 
 constexpr std::uint32_t sets = 16;  // a power of 2
+constexpr std::size_t beyond = 3;    // offsets are read four at a time
 
 }  // namespace
 
@@ -19,6 +20,7 @@ Patterns::Patterns(const Filter& filter, std::uint32_t samples) : samples_(sampl
       x_.push_back(x), y_.push_back(y);
     }
   }
+  x_.resize(x_.size() + beyond), y_.resize(y_.size() + beyond);
 }
 
 Offsets Patterns::of(std::int32_t x, std::int32_t y) const {

@@ -3,6 +3,7 @@
 // their mean.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <numeric>
 
 #include "antialias/lanes.h"
@@ -110,45 +111,45 @@ bool Refiner::by_regions(const Unclear& pixel, std::uint32_t look, const Results
   if (!pixel.lines.are_within(reach)) return false;
   const Offsets offsets = patterns_.of(pixel.pixel.x, pixel.pixel.y);
   const Corner corner(pixel.lines);
-  // Those of whose region we are sure, then the others.
-  std::array<std::uint32_t, 2 * Corner::unsure> counts{};
-  std::array<float, 4> paths{};
+  // Samples of one region go one way, and those that may be beyond a line one of these ways: else
+  // there is more than the two edges.
+  const Corner::Regions regions = corner.regions(offsets.part(0, look));
   const float* path = results[outputs_] + at;
-  std::array<std::uint8_t, corner_look> regions{};
-  for (std::uint32_t k = 0; k < look; ++k) {
-    const std::uint8_t region = regions[k] = corner.region(offsets.x[k], offsets.y[k]);
-    if (counts[region]++ == 0 && region < Corner::unsure) paths[region] = path[k];
-    if (region < Corner::unsure && paths[region] != path[k]) return false;
+  std::uint32_t known = 0, unsure = 0;
+  for (std::size_t r = 0; r < 4; ++r) {
+    const std::uint32_t sure = regions.sure[r];
+    if (sure == 0) continue;
+    const float way = path[std::countr_zero(sure)];
+    std::uint32_t alike = 0;
+    for (std::uint32_t k = 0; k < look; k += four)
+      alike |= mask_of(load<Four>(path + k) == way) << k;
+    if ((sure & ~alike) != 0) return false;
+    known |= alike, unsure |= regions.unsure[r];
   }
-  // Where another goes a way of its own there is more than the two edges.
-  for (std::uint32_t k = 0; k < look; ++k) {
-    const std::size_t region = regions[k] % Corner::unsure;
-    if (regions[k] == region || counts[region] == 0) continue;
-    bool is_known = false;
-    for (std::size_t r = 0; r < 4; ++r) is_known |= counts[r] > 0 && paths[r] == path[k];
-    if (!is_known) return false;
-  }
+  if ((unsure & ~known) != 0) return false;
 
   // A narrow region that no sample is sure to be in: those that may be, else what is beside it, as
   // for a ramp.
   std::array<float, 4> weights = corner.weights(options_.filter, offsets);
-  std::array<std::size_t, 4> from = {0, 1, 2, 3};
+  std::array<std::uint32_t, 4> from = regions.sure;
   float total = 0;
   for (std::size_t r = 0; r < 4; ++r) {
-    if (counts[r] == 0) from[r] |= Corner::unsure;
-    if (counts[r] > 0 || weights[r] <= least_weight || counts[from[r]] > 0) continue;
+    if (from[r] == 0) from[r] = regions.unsure[r];
+    if (from[r] != 0 || weights[r] <= least_weight) continue;
     const std::size_t a = r ^ 1, b = r ^ 2;
-    if (weights[r] > most_unseen || counts[a] == 0 || counts[b] == 0) return false;
+    if (weights[r] > most_unseen || regions.sure[a] == 0 || regions.sure[b] == 0) return false;
     weights[a] += weights[r] / 2, weights[b] += weights[r] / 2;
   }
-  for (std::size_t r = 0; r < 4; ++r) total += counts[from[r]] > 0 ? weights[r] : 0;
+  for (std::size_t r = 0; r < 4; ++r) total += from[r] != 0 ? weights[r] : 0;
   for (std::size_t o = 0; o < outputs_; ++o) {
-    std::array<float, counts.size()> sums{};
-    for (std::uint32_t k = 0; k < look; ++k) sums[regions[k]] += results[o][at + k];
     float value = 0;
-    for (std::size_t r = 0; r < 4; ++r)
-      if (const std::size_t of = from[r]; counts[of] > 0)
-        value += weights[r] / total * (sums[of] / static_cast<float>(counts[of]));
+    for (std::size_t r = 0; r < 4; ++r) {
+      if (from[r] == 0) continue;
+      float sum = 0;
+      for (std::uint32_t some = from[r]; some != 0; some &= some - 1)
+        sum += results[o][at + static_cast<std::size_t>(std::countr_zero(some))];
+      value += weights[r] / total * (sum / static_cast<float>(std::popcount(from[r])));
+    }
     values[o] = value;
   }
   return true;

@@ -33,10 +33,12 @@ TEST(Corner, AStripHasTheDifferenceOfTheShares) {
 
 TEST(Corner, ARegionIsUnsureNearALine) {
   const Corner corner({{0, 1, 0}, {0.3f, 0, 1}});
-  EXPECT_EQ(corner.region(0.2f, 0.1f), 3);
-  EXPECT_EQ(corner.region(-0.2f, 0.1f), 2);
-  EXPECT_EQ(corner.region(0.2f, -0.45f), 1);
-  EXPECT_EQ(corner.region(0.01f, 0.1f), 3 | Corner::unsure);
+  // Behind the fifth, what is no place.
+  constexpr std::array x = {0.2f, -0.2f, 0.2f, 0.01f, -0.2f, 0.2f, 0.2f, 0.2f};
+  constexpr std::array y = {0.1f, 0.1f, -0.45f, 0.1f, -0.4f, 0.1f, 0.1f, 0.1f};
+  const Corner::Regions found = corner.regions(Offsets{x, y}.part(0, 5));
+  EXPECT_EQ(found.sure, (std::array<std::uint32_t, 4>{1u << 4, 1u << 2, 1u << 1, 1u << 0}));
+  EXPECT_EQ(found.unsure, (std::array<std::uint32_t, 4>{0, 0, 0, 1u << 3}));
 }
 
 // A quarter plane whose corner lies in a pixel's middle: 1/4 of a kernel that is round. 16 samples

@@ -163,22 +163,22 @@ class PlaneSamples : public SampleSource {
         for (std::size_t i = 0; i < x.size(); ++i) out[i] = static_cast<float>(value(i));
       };
       // The usual ones in loops of their own.
-      const double w = plane_.width, h = plane_.height;
+      const double w = plane_.width, h = plane_.height, per_w = 1 / w, per_h = 1 / h;
       switch (plane_.transform || input.part != Part::value ? Coordinate::point_z
                                                             : input.coordinate) {
         case Coordinate::u:
-          each([&](std::size_t i) { return x[i] / w; });
+          each([&](std::size_t i) { return x[i] * per_w; });
           break;
         case Coordinate::v:
-          each([&](std::size_t i) { return 1 - y[i] / h; });
+          each([&](std::size_t i) { return 1 - y[i] * per_h; });
           break;
         case Coordinate::x:
         case Coordinate::point_x:
-          each([&](std::size_t i) { return (2 * x[i] - w) / h; });
+          each([&](std::size_t i) { return (2 * x[i] - w) * per_h; });
           break;
         case Coordinate::y:
         case Coordinate::point_y:
-          each([&](std::size_t i) { return (h - 2 * y[i]) / h; });
+          each([&](std::size_t i) { return (h - 2 * y[i]) * per_h; });
           break;
         default:
           each([&](std::size_t i) { return input_at(plane_, input, x[i], y[i]); });

@@ -64,7 +64,7 @@ void Refiner::sample(std::span<const Pixel> pixels, std::uint32_t first, std::ui
     for (std::size_t i = begin; i < end; ++i) {
       const Pixel& pixel = pixels[i];
       const double x = pixel.x + 0.5, y = pixel.y + 0.5;
-      const Offsets offsets = patterns_.of(pixel.x, pixel.y).part(first, each);
+      const Offsets offsets = patterns_.of(pixel.x, pixel.y, last).part(first, each);
       for (std::size_t k = 0; k < each; ++k) {
         *to_x++ = x + double(offsets.x[k]);
         *to_y++ = y + double(offsets.y[k]);
@@ -109,11 +109,11 @@ bool Refiner::by_regions(const Unclear& pixel, std::uint32_t look, const Results
   constexpr float least_weight = 0.004f, most_unseen = 0.1f;
   const float reach = options_.filter.reach();
   if (!pixel.lines.are_within(reach)) return false;
-  const Offsets offsets = patterns_.of(pixel.pixel.x, pixel.pixel.y);
+  const Offsets offsets = patterns_.of(pixel.pixel.x, pixel.pixel.y, look);
   const Corner corner(pixel.lines);
   // Samples of one region go one way, and those that may be beyond a line one of these ways: else
   // there is more than the two edges.
-  const Corner::Regions regions = corner.regions(offsets.part(0, look));
+  const Corner::Regions regions = corner.regions(offsets);
   const float* path = results[outputs_] + at;
   std::uint32_t known = 0, unsure = 0;
   for (std::size_t r = 0; r < 4; ++r) {
@@ -130,7 +130,7 @@ bool Refiner::by_regions(const Unclear& pixel, std::uint32_t look, const Results
 
   // A narrow region that no sample is sure to be in: those that may be, else what is beside it, as
   // for a ramp.
-  std::array<float, 4> weights = corner.weights(options_.filter, offsets);
+  std::array<float, 4> weights = corner.weights(options_.filter, patterns_.all());
   std::array<std::uint32_t, 4> from = regions.sure;
   float total = 0;
   for (std::size_t r = 0; r < 4; ++r) {

@@ -12,7 +12,7 @@ namespace {
 
 std::array<float, 4> weights(const Lines& lines) {
   const Filter filter;
-  return Corner(lines).weights(filter, Patterns(filter, 64).of(3, 5));
+  return Corner(lines).weights(filter, Patterns(filter, 64).all());
 }
 
 // Regions: 0 behind both lines, 1 before the first, 2 before the second, 3 before both.

@@ -29,22 +29,18 @@ template <class V>
   return least_step * (1 + smaller(size(value), V{} + huge));
 }
 
-// Whether an output jumps from samples with the values `here` to opposite neighbours of them.
+// Whether an output jumps from samples to opposite neighbours, which differ by so much from them.
 template <class V>
 struct Jumps {
   AnswersOf<V> ahead, back;
 };
 // Where both neighbours go other ways (`alone`), neither tells a slope.
 template <class V>
-[[gnu::always_inline]] inline Jumps<V> jumps(V here, V ahead, V back, V least,
-                                             AnswersOf<V> alone) {
-  using Answers = AnswersOf<V>;
-  const V to_a = ahead - here, to_b = back - here;
+[[gnu::always_inline]] inline Jumps<V> jumps(V to_ahead, V to_back, V least, AnswersOf<V> alone) {
   // The neighbour on the other side tells the slope, and so where this one would be without a jump.
-  const V beyond = size(to_a + to_b), up = size(to_a), down = size(to_b);
-  const Answers same_a = bits(ahead) == bits(here), same_b = bits(back) == bits(here);
-  return {~((up <= least) | (~alone & (beyond <= larger(down, least))) | same_a),
-          ~((down <= least) | (~alone & (beyond <= larger(up, least))) | same_b)};
+  const V beyond = size(to_ahead + to_back), up = size(to_ahead), down = size(to_back);
+  return {~((up <= least) | (~alone & (beyond <= larger(down, least)))),
+          ~((down <= least) | (~alone & (beyond <= larger(up, least))))};
 }
 
 // Looks at all pixels whose columns and rows are within `reach`, `count` at once.
@@ -104,6 +100,7 @@ class Search {
 
  private:
   static constexpr std::ptrdiff_t at_once = count;
+  static constexpr int directions = 2 * reach * (reach + 1);
 
   // Whether the searches of samples end in different places.
   [[gnu::always_inline]] Answers end_apart(std::ptrdiff_t here, std::ptrdiff_t there) const {
@@ -145,40 +142,67 @@ class Search {
     return change;
   }
 
-  // Values pixels in a row; what is said of those behind the row's end has no meaning.
+  // At pixels in a row; what is said of those behind the row's end has no meaning.
   [[gnu::always_inline]] Seen look(std::ptrdiff_t here) const {
-    Seen seen = look_at_paths(here);
-    if (!any(seen.edge)) {
-      seen.hidden &= ~seen.narrow;
-      return seen;
+    Seen seen;
+    for (const std::ptrdiff_t step : {std::ptrdiff_t{1}, width_}) {
+      see_leap(seen, here, here + step);
+      see_leap(seen, here, here - step);
     }
-    seen.edge = Answers{};
-    for (const std::ptrdiff_t step : steps_) look_along(seen, here, step);
+    for (std::size_t o = 0; o < tile_.outputs; ++o) see_jumps(seen, here, tile_.planes[o]);
     seen.narrow &= ~seen.edge;
     seen.hidden &= ~(seen.edge | seen.narrow);
     if (any(seen.edge)) seen.untold |= is_crowded(here);
     return seen;
   }
 
-  // Which pixels are narrow, if none of them is an edge; and which may be one (`edge`): most ways
-  // through a program end in the same place.
-  [[gnu::always_inline]] Seen look_at_paths(std::ptrdiff_t here) const {
-    Seen seen;
-    for (const std::ptrdiff_t step : {std::ptrdiff_t{1}, width_}) {
-      see_leap(seen, here, here + step);
-      see_leap(seen, here, here - step);
+  // Where an output jumps between ways. Most ways through a program end in the same place.
+  [[gnu::always_inline]] void see_jumps(Seen& seen, std::ptrdiff_t here, const float* plane) const {
+    const Values value = load<Values>(plane + here), least = least_step_from(value);
+    // As bits, since NaN is the largest of these.
+    Answers farthest{};
+    for (const std::ptrdiff_t step : steps_)
+      farthest = larger(farthest, larger(bits(size(load<Values>(plane + here + step) - value)),
+                                         bits(size(load<Values>(plane + here - step) - value))));
+    Answers far = farthest > bits(least);
+    // Of what is known to be an edge there may be more to tell.
+    if (ends_ == nullptr && tile_.ids == nullptr) far &= ~seen.edge;
+    if (!any(far)) return;
+    for (const std::ptrdiff_t step : steps_) see_jumps_along(seen, here, step, plane, least, far);
+  }
+
+  // To the two neighbours `step` before and behind each of those that are `far` from some neighbour.
+  [[gnu::always_inline]] void see_jumps_along(Seen& seen, std::ptrdiff_t here, std::ptrdiff_t step,
+                                              const float* plane, Values least, Answers far) const {
+    const Answers way = load<Answers>(path_ + here);
+    Answers ahead = load<Answers>(path_ + here + step) != way;
+    Answers back = load<Answers>(path_ + here - step) != way;
+    Jumps<Values> ends{};
+    if (ends_ != nullptr) {
+      ends = jumps(apart(ends_, here, step), apart(ends_, here, -step), Values{} + least_end,
+                   Answers{});
+      ahead |= ends.ahead, back |= ends.back;
     }
-    for (std::size_t o = 0; o < tile_.outputs; ++o) {
-      const float* at = tile_.planes[o] + here;
-      const Values value = load<Values>(at), least = least_step_from(value);
-      // As bits, since NaN is the largest of these.
-      Answers farthest{};
-      for (const std::ptrdiff_t step : steps_)
-        farthest = larger(farthest, larger(bits(size(load<Values>(at + step) - value)),
-                                           bits(size(load<Values>(at - step) - value))));
-      seen.edge |= farthest > bits(least);
-    }
-    return seen;
+    ahead &= far, back &= far;
+    if (!any(ahead | back)) return;
+    const Values to_ahead = apart(plane, here, step), to_back = apart(plane, here, -step);
+    const Jumps<Values> found = jumps(to_ahead, to_back, least, ahead & back);
+    const Answers jumps_ahead = ahead & found.ahead, jumps_back = back & found.back;
+    seen.edge |= jumps_ahead | jumps_back |
+                 ((ahead | back) & (size(to_ahead + to_back) > least_bend));
+    seen.untold |= (jumps_ahead & ends.ahead) | (jumps_back & ends.back);
+    if (tile_.ids == nullptr) return;
+    const float* id = tile_.ids + here;
+    const Values object = load<Values>(id);
+    seen.silhouette |= (jumps_ahead & (load<Values>(id + step) != object)) |
+                       (jumps_back & (load<Values>(id - step) != object));
+  }
+
+  // How much a plane changes by a step. Infinities and what is no number differ not from the same.
+  [[gnu::always_inline]] static Values apart(const float* plane, std::ptrdiff_t here,
+                                             std::ptrdiff_t step) {
+    const Values from = load<Values>(plane + here), to = load<Values>(plane + here + step);
+    return choose(bits(from) == bits(to), Values{}, to - from);
   }
 
   // Whether more than one decision falls differently (path.cpp): narrow; or a crease: hidden.
@@ -215,49 +239,13 @@ class Search {
     return (alike > -least_alike) & ((turns == 0) | (turns < -4));
   }
 
-  // At the two neighbours `step` before and behind each.
-  [[gnu::always_inline]] void look_along(Seen& seen, std::ptrdiff_t here,
-                                         std::ptrdiff_t step) const {
-    const Answers way = load<Answers>(path_ + here);
-    Answers ahead = load<Answers>(path_ + here + step) != way;
-    Answers back = load<Answers>(path_ + here - step) != way;
-    // Of what is known to be an edge there may be more to tell.
-    const bool all_told = ends_ == nullptr && tile_.ids == nullptr;
-    if (all_told) ahead &= ~seen.edge, back &= ~seen.edge;
-    Jumps<Values> ends{};
-    if (ends_ != nullptr) {
-      ends = jumps(load<Values>(ends_ + here), load<Values>(ends_ + here + step),
-                   load<Values>(ends_ + here - step), Values{} + least_end, Answers{});
-      ahead |= ends.ahead, back |= ends.back;
-    }
-    const Answers alone = ahead & back;
-    Answers jumps_ahead{}, jumps_back{};
-    if (!any(ahead | back)) return;
-    for (std::size_t o = 0; o < tile_.outputs; ++o) {
-      const float* at = tile_.planes[o] + here;
-      const Values value = load<Values>(at);
-      const Values next = load<Values>(at + step), last = load<Values>(at - step);
-      const Jumps<Values> found = jumps(value, next, last, least_step_from(value), alone);
-      jumps_ahead |= ahead & found.ahead;
-      jumps_back |= back & found.back;
-      seen.edge |= (ahead | back) & (size((next - value) + (last - value)) > least_bend);
-    }
-    seen.edge |= jumps_ahead | jumps_back;
-    seen.untold |= (jumps_ahead & ends.ahead) | (jumps_back & ends.back);
-    if (tile_.ids == nullptr) return;
-    const float* id = tile_.ids + here;
-    const Values object = load<Values>(id);
-    seen.silhouette |= (jumps_ahead & (load<Values>(id + step) != object)) |
-                       (jumps_back & (load<Values>(id - step) != object));
-  }
-
   const Tile& tile_;
   const SearchRoom& room_;
   const std::ptrdiff_t width_, groups_;  // of a row
   const std::ptrdiff_t apart_;           // groups of the area
   const float* const path_;
   const float* const ends_;                        // null: there are none
-  std::ptrdiff_t steps_[2 * reach * (reach + 1)];  // to one of each two opposite neighbours
+  std::ptrdiff_t steps_[directions];               // to one of each two opposite neighbours
 };
 
 template <std::size_t count, int reach>

@@ -228,16 +228,18 @@ void Lowering::assign_index(const AssignStmt& assign, const IndexExpr& index, co
   if (base.kind == Kind::array) {
     if (index.indices.size() != 1)
       return error("index-count", span, "an array takes one index");
+    // What was to be put in is reported already: the array is silent from here on.
+    const auto give_up = [&] { variables()[name->name] = {}; };
     const Typed position = to_number(lower(*index.indices.front()));
-    if (position.is_error()) return;
+    if (position.is_error()) return give_up();
     if (position.kind != Kind::number)
       return error("index-type", index.indices.front()->span,
                    "an index must be a number, this is " + describe(position));
     const ir::Value at = to_index(position);
     const Typed value =
         assigned_value(assign, [&] { return load_element(base, at, span, true); }, span);
-    if (!value.is_error()) store_element(base, at, value, span);
-    return;
+    if (value.is_error()) return give_up();
+    return store_element(base, at, value, span);
   }
   if (base.kind != Kind::vector && base.kind != Kind::matrix)
     return error("index-base", span,

@@ -120,6 +120,8 @@ TEST(Errors, NoneFollowsFromAnother) {
   EXPECT_EQ(errors_of("def f(x):\n  return x\na = f(1)"), 1u);
   EXPECT_EQ(errors_of("float t = 3\na = t"), 1u);
   EXPECT_EQ(errors_of("if 1 > 0\n  a = 1\n else\n  a = 2"), 1u);
+  EXPECT_EQ(errors_of("a[1] = missing\nb = a[1] + count(a)"), 1u);
+  EXPECT_EQ(errors_of("a[missing] = 1\nb = a[1]"), 1u);
 }
 
 TEST(Errors, EachWrongCallOfTheLibraryIsOne) {

@@ -115,6 +115,31 @@ TEST_F(StepsOfAntialiasing, WhatIsNoEdgeIsNotUntold) {
   }
 }
 
+// Of large values steps below a hundredth of them are no edges, and neither is a bend of such steps,
+// whatever is an edge beside it.
+TEST_F(StepsOfAntialiasing, ABendOfSmallStepsIsNoEdge) {
+  constexpr int width = 16;
+  Tile tile{.rect = {0, 0, width, 1}, .area = {-1, -1, width + 1, 2}, .outputs = 1};
+  const auto samples = static_cast<std::size_t>(tile.area.width() * tile.area.height());
+  std::vector<float> values(samples + 64, 10), path(samples + 64);
+  // A roof at 2, of two steps of 0.1 where 0.11 is the least; a jump behind 9.
+  for (int y = -1; y < 2; ++y) {
+    values[tile.at(2, y)] = 10.1f;
+    for (int x = 3; x < 10; ++x) path[tile.at(x, y)] = 1;
+    for (int x = 10; x < width + 1; ++x) values[tile.at(x, y)] = 20, path[tile.at(x, y)] = 2;
+  }
+  float* const planes[] = {values.data(), path.data()};
+  tile.planes = planes;
+  for (const Steps* steps : runnable()) {
+    std::vector<std::uint16_t> changes(samples);
+    std::vector<Pixel> found(samples + 64);
+    found.resize(steps->search[0](tile, {changes.data(), found.data()}));
+    ASSERT_EQ(found.size(), 2u);
+    EXPECT_EQ(found[0].x, 9);
+    EXPECT_EQ(found[1].x, 10);
+  }
+}
+
 TEST_F(StepsOfAntialiasing, FindTheSameFinePixels) {
   for (const int width : {1, 7, 16, 33, 64}) {
     Tile tile{.rect = {0, 0, width, 9}, .area = {-1, -1, width + 1, 10}, .outputs = 2};

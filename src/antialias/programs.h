@@ -17,8 +17,7 @@ enum class Mode : std::uint8_t {
 
 struct Options {
   Mode mode = Mode::procedural;
-  // Of a pixel that is supersampled; within objects the procedural mode takes a quarter or half as
-  // many.
+  // Of a pixel that is supersampled; within objects the procedural mode takes half as many.
   int samples = 64;
   Filter filter = Filter();
 };

@@ -106,7 +106,7 @@ void Refiner::add_means(std::span<const Pixel> pixels, std::uint32_t count, Refi
 // disagree, or of a large one there are none.
 bool Refiner::by_regions(const Unclear& pixel, std::uint32_t look, const Results& results,
                          std::size_t at, std::span<float> values) const {
-  constexpr float least_weight = 0.004f, most_unseen = 0.1f;
+  constexpr float least_weight = 0.004f;
   const float reach = options_.filter.reach();
   if (!pixel.lines.are_within(reach)) return false;
   const Offsets offsets = patterns_.of(pixel.pixel.x, pixel.pixel.y, look);
@@ -128,19 +128,15 @@ bool Refiner::by_regions(const Unclear& pixel, std::uint32_t look, const Results
   }
   if ((unsure & ~known) != 0) return false;
 
-  // A narrow region that no sample is sure to be in: those that may be, else what is beside it, as
-  // for a ramp.
-  std::array<float, 4> weights = corner.weights(options_.filter, patterns_.all());
+  // A narrow region that no sample is sure to be in: those that may be.
+  const std::array<float, 4> weights = corner.weights(options_.filter, patterns_.all());
   std::array<std::uint32_t, 4> from = regions.sure;
   float total = 0;
   for (std::size_t r = 0; r < 4; ++r) {
     if (from[r] == 0) from[r] = regions.unsure[r];
-    if (from[r] != 0 || weights[r] <= least_weight) continue;
-    const std::size_t a = r ^ 1, b = r ^ 2;
-    if (weights[r] > most_unseen || regions.sure[a] == 0 || regions.sure[b] == 0) return false;
-    weights[a] += weights[r] / 2, weights[b] += weights[r] / 2;
+    if (from[r] == 0 && weights[r] > least_weight) return false;
+    total += from[r] != 0 ? weights[r] : 0;
   }
-  for (std::size_t r = 0; r < 4; ++r) total += from[r] != 0 ? weights[r] : 0;
   for (std::size_t o = 0; o < outputs_; ++o) {
     float value = 0;
     for (std::size_t r = 0; r < 4; ++r) {
@@ -173,8 +169,7 @@ Range Refiner::range_around(const Tile& tile, const Pixel& pixel, std::size_t ou
 
 // Samples in steps, each as many as before it together. Narrow pixels whose first samples show
 // nothing stay as they are; those whose samples confirm two edges are put together from their
-// regions. A quarter of the samples is enough where the program's edges are known; half where a
-// loop marches or the edges are too many; all for outlines: theirs are long, and nothing else
+// regions. Half of the samples are enough, but for outlines: theirs are long, and nothing else
 // smooths them.
 void Refiner::settle(const Tile& tile, Refined& result, Counts& counts, Work& work,
                      RunStatus& status) const {
@@ -193,7 +188,6 @@ void Refiner::settle(const Tile& tile, Refined& result, Counts& counts, Work& wo
     ++counts.supersampled;
   };
 
-  const bool marches = tile.ends() != nullptr;
   std::vector<std::size_t> kept, now;
   std::vector<Pixel> pixels;
   // The samples [first, last) of the pixels `now`; those that need more are kept.
@@ -225,8 +219,7 @@ void Refiner::settle(const Tile& tile, Refined& result, Counts& counts, Work& wo
         uneven = uneven || is_uneven(range.with(around), last);
       }
       if (!more) return;
-      const std::uint32_t part = pixel.silhouette ? 1 : pixel.untold || marches ? 2 : 4;
-      const std::uint32_t most = std::max(look, count / part);
+      const std::uint32_t most = pixel.silhouette ? count : std::max(look, count / 2);
       if (uneven && first == 0 && last == look &&
           by_regions(unclear[i], look, results, s * each, values))
         done(i, values.data(), 1);

@@ -56,7 +56,7 @@ TEST(Formulations, OfOneHalfPlaneAreTheSameEdge) {
 }
 
 // A line of a third of a pixel is broken nowhere, where it passes between samples for many rows too:
-// the exact response is the difference of those of its edges. Samples tell it, 16 of them.
+// the exact response is the difference of those of its edges. Samples tell it, 32 of them.
 TEST(Formulations, ThinLinesAreWhole) {
   for (const char* program :
        {"c = abs(_q - 1 / 6) < 1 / 6\n", "c = fract(_q / 100) < 1 / 300\n",

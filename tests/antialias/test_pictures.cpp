@@ -239,7 +239,7 @@ TEST(Pictures, WhatLiesBetweenTheSamplesIsSeen) {
       ASSERT_EQ(white.at(x, y), 1);
       // From -1/2 to -1/8 and from 3/8 to 1/2 the pixel is black.
       const float black = Filter().share(-0.125f, 0, 1) + 1 - Filter().share(0.375f, 0, 1);
-      EXPECT_NEAR(grey.at(x, y), 1 - black, 0.06) << x << ' ' << y;  // of 16 samples, one
+      EXPECT_NEAR(grey.at(x, y), 1 - black, 0.06) << x << ' ' << y;  // of 32 samples, two
     }
 }
 

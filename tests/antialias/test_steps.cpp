@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <limits>
 #include <random>
@@ -29,6 +30,28 @@ std::vector<std::uint32_t> bits_of(const float* values, std::size_t count) {
   std::memcpy(bits.data(), values, count * sizeof(float));
   return bits;
 }
+
+std::vector<Pixel> found_by(const Steps& steps, const Tile& tile, int reach = 1) {
+  const auto samples = static_cast<std::size_t>(tile.area.width() * tile.area.height());
+  std::vector<std::uint16_t> changes(samples);
+  std::vector<Pixel> found(samples + SearchRoom::beyond);
+  const auto search = steps.search[static_cast<std::size_t>(reach) - 1];
+  found.resize(search(tile, {changes.data(), found.data()}));
+  return found;
+}
+
+// A row of 16 pixels with its apron, one output of one value, one way.
+struct Row {
+  static constexpr int width = 16;
+  Tile tile{.rect = {0, 0, width, 1}, .area = {-1, -1, width + 1, 2}, .outputs = 1};
+  std::vector<float> values, path;
+  std::array<float*, 2> planes;
+
+  explicit Row(float value) : values(3 * (width + 2) + 64, value), path(values.size()) {
+    planes = {values.data(), path.data()};
+    tile.planes = planes;
+  }
+};
 
 class StepsOfAntialiasing : public testing::Test {
  protected:
@@ -68,13 +91,7 @@ TEST_F(StepsOfAntialiasing, SearchForTheSamePixels) {
         tile.planes = pointers;
         if (has_ends) tile.ids = ids.data();
         std::vector<std::vector<Pixel>> found;
-        for (const Steps* steps : runnable()) {
-          std::vector<std::uint16_t> changes(samples);
-          std::vector<Pixel> pixels(samples + SearchRoom::beyond);
-          pixels.resize(steps->search[static_cast<std::size_t>(reach) - 1](
-              tile, {changes.data(), pixels.data()}));
-          found.push_back(pixels);
-        }
+        for (const Steps* steps : runnable()) found.push_back(found_by(*steps, tile, reach));
         EXPECT_GT(found[0].size(), 0u);
         for (const auto& pixels : found) {
           ASSERT_EQ(pixels.size(), found[0].size());
@@ -90,21 +107,16 @@ TEST_F(StepsOfAntialiasing, SearchForTheSamePixels) {
 // Whether hardly a neighbour goes the same way is asked for all pixels at once where any of them is
 // an edge; of those that are none the answer would depend on what stands beside them.
 TEST_F(StepsOfAntialiasing, WhatIsNoEdgeIsNotUntold) {
-  constexpr int width = 16;
-  Tile tile{.rect = {0, 0, width, 1}, .area = {-1, -1, width + 1, 2}, .outputs = 1};
-  const auto samples = static_cast<std::size_t>(tile.area.width() * tile.area.height());
-  std::vector<float> values(samples + 64, 0.5f), path(samples + 64);
+  Row row(0.5f);
+  const Tile& tile = row.tile;
+  auto &values = row.values, &path = row.path;
   // Ways of their own around (2, 0), all of the same value; an edge at 6 in the same eight.
   for (int y = -1; y < 2; ++y) {
     for (int x = 1; x < 4; ++x) path[tile.at(x, y)] = static_cast<float>(100 * x + 1000 * (y + 2));
-    for (int x = 6; x < width + 1; ++x) values[tile.at(x, y)] = 1, path[tile.at(x, y)] = 1;
+    for (int x = 6; x < Row::width + 1; ++x) values[tile.at(x, y)] = 1, path[tile.at(x, y)] = 1;
   }
-  float* const planes[] = {values.data(), path.data()};
-  tile.planes = planes;
   for (const Steps* steps : runnable()) {
-    std::vector<std::uint16_t> changes(samples);
-    std::vector<Pixel> found(samples + 64);
-    found.resize(steps->search[0](tile, {changes.data(), found.data()}));
+    const std::vector<Pixel> found = found_by(*steps, tile);
     int narrow = 0, edges = 0;
     for (const Pixel& pixel : found) {
       narrow += pixel.narrow ? 1 : 0, edges += pixel.narrow ? 0 : 1;
@@ -118,22 +130,17 @@ TEST_F(StepsOfAntialiasing, WhatIsNoEdgeIsNotUntold) {
 // Of large values steps below a hundredth of them are no edges, and neither is a bend of such steps,
 // whatever is an edge beside it.
 TEST_F(StepsOfAntialiasing, ABendOfSmallStepsIsNoEdge) {
-  constexpr int width = 16;
-  Tile tile{.rect = {0, 0, width, 1}, .area = {-1, -1, width + 1, 2}, .outputs = 1};
-  const auto samples = static_cast<std::size_t>(tile.area.width() * tile.area.height());
-  std::vector<float> values(samples + 64, 10), path(samples + 64);
+  Row row(10);
+  const Tile& tile = row.tile;
+  auto &values = row.values, &path = row.path;
   // A roof at 2, of two steps of 0.1 where 0.11 is the least; a jump behind 9.
   for (int y = -1; y < 2; ++y) {
     values[tile.at(2, y)] = 10.1f;
     for (int x = 3; x < 10; ++x) path[tile.at(x, y)] = 1;
-    for (int x = 10; x < width + 1; ++x) values[tile.at(x, y)] = 20, path[tile.at(x, y)] = 2;
+    for (int x = 10; x < Row::width + 1; ++x) values[tile.at(x, y)] = 20, path[tile.at(x, y)] = 2;
   }
-  float* const planes[] = {values.data(), path.data()};
-  tile.planes = planes;
   for (const Steps* steps : runnable()) {
-    std::vector<std::uint16_t> changes(samples);
-    std::vector<Pixel> found(samples + 64);
-    found.resize(steps->search[0](tile, {changes.data(), found.data()}));
+    const std::vector<Pixel> found = found_by(*steps, tile);
     ASSERT_EQ(found.size(), 2u);
     EXPECT_EQ(found[0].x, 9);
     EXPECT_EQ(found[1].x, 10);

@@ -128,23 +128,20 @@ bool Refiner::by_regions(const Unclear& pixel, std::uint32_t look, const Results
   }
   if ((unsure & ~known) != 0) return false;
 
-  // A narrow region that no sample is sure to be in: those that may be.
   const std::array<float, 4> weights = corner.weights(options_.filter, patterns_.all());
-  std::array<std::uint32_t, 4> from = regions.sure;
   float total = 0;
   for (std::size_t r = 0; r < 4; ++r) {
-    if (from[r] == 0) from[r] = regions.unsure[r];
-    if (from[r] == 0 && weights[r] > least_weight) return false;
-    total += from[r] != 0 ? weights[r] : 0;
+    if (regions.sure[r] == 0 && weights[r] > least_weight) return false;
+    total += regions.sure[r] != 0 ? weights[r] : 0;
   }
   for (std::size_t o = 0; o < outputs_; ++o) {
     float value = 0;
     for (std::size_t r = 0; r < 4; ++r) {
-      if (from[r] == 0) continue;
+      if (regions.sure[r] == 0) continue;
       float sum = 0;
-      for (std::uint32_t some = from[r]; some != 0; some &= some - 1)
+      for (std::uint32_t some = regions.sure[r]; some != 0; some &= some - 1)
         sum += results[o][at + static_cast<std::size_t>(std::countr_zero(some))];
-      value += weights[r] / total * (sum / static_cast<float>(std::popcount(from[r])));
+      value += weights[r] / total * (sum / static_cast<float>(std::popcount(regions.sure[r])));
     }
     values[o] = value;
   }

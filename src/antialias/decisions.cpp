@@ -7,6 +7,7 @@
 #include "antialias/fine.h"
 #include "antialias/seams.h"
 #include "antialias/searches.h"
+#include "ir/expectations.h"
 #include "passes/passes.h"
 #include "passes/slice.h"
 #include "passes/slope_rules.h"
@@ -50,7 +51,35 @@ bool is_of_noise(const ir::Module& module, Value value) {
   return uses_noise(module, slice, module.main().body);
 }
 
+void find_defined(const Region& region, std::vector<bool>& defined) {
+  for (const Instruction& in : region.body) {
+    for (const Value result : in.results) defined[result] = true;
+    for (const Region& inner : in.regions) find_defined(inner, defined);
+  }
+}
+
+// What is gone with the expectations was wanted for them alone.
+std::vector<bool> find_expected(const ir::Module& module) {
+  std::vector<bool> found(module.main().values.size());
+  if (!ir::has_expectations(module)) return found;
+  ir::Module bare = module;
+  passes::remove_dead(bare);
+  found = defined_values(bare.main());
+  ir::drop_expectations(bare);
+  passes::remove_dead(bare);
+  const std::vector<bool> left = defined_values(bare.main());
+  for (std::size_t value = 0; value < found.size(); ++value)
+    if (left[value]) found[value] = false;
+  return found;
+}
+
 }  // namespace
+
+std::vector<bool> defined_values(const Function& function) {
+  std::vector<bool> defined(function.values.size());
+  find_defined(function.body, defined);
+  return defined;
+}
 
 Cut cut_of(Op op) {
   switch (op) {
@@ -75,10 +104,13 @@ Cut cut_of(Op op) {
 
 Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
   const std::size_t own = module.main().values.size();
+  std::vector<bool> expected = find_expected(module);
   const std::vector<Value> seams = add_seams(module);
   passes::assign_rates(module);
   const Function& main = module.main();
   Decisions found;
+  found.expected = std::move(expected);
+  found.expected.resize(main.values.size());
   found.forks.resize(main.values.size());
   found.bends.resize(main.values.size());
   found.creases.resize(main.values.size());
@@ -87,7 +119,9 @@ Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
   // so all along its way.
   found.dithered = find_dither(module);
   const auto differs = [&](const Instruction& in) {
-    return main.values[in.result()].rate == ir::Rate::sample && !found.dithered[in.result()];
+    const Value result = in.result();
+    return main.values[result].rate == ir::Rate::sample && !found.dithered[result] &&
+           !found.expected[result];
   };
   for_each(main.body, found, [&](const Instruction& in) {
     const Cut cut = cut_of(in.op);

@@ -21,6 +21,9 @@ enum class Cut : std::uint8_t {
 };
 Cut cut_of(ir::Op op);
 
+// By value: whether an instruction of the function gives it.
+std::vector<bool> defined_values(const ir::Function& function);
+
 // The cuts of the main function that differ from sample to sample, by the value that they give.
 struct Decisions {
   std::vector<bool> forks;     // jumps, and min and max: a steep clamp is an edge to the eye
@@ -29,6 +32,7 @@ struct Decisions {
   // may lie on one. None that are made of noise, or that only choose a random number.
   std::vector<bool> creases;
   std::vector<bool> dithered;  // what depends on chance (dither.h): none of these is an edge
+  std::vector<bool> expected;  // what expectations alone need (ir/expectations.h): likewise none
   std::vector<bool> searched;  // the conditions of loops that search
   std::vector<bool> ends;      // the results of these that are used
   std::vector<bool> noises;    // calls of noise that may be finer than a pixel (fine.h)

@@ -33,14 +33,6 @@ std::vector<bool> differing(ir::Module& module) {
   return found;
 }
 
-// The results of all instructions.
-void find_defined(const Region& region, std::vector<bool>& defined) {
-  for (const Instruction& in : region.body) {
-    for (const Value result : in.results) defined[result] = true;
-    for (const Region& inner : in.regions) find_defined(inner, defined);
-  }
-}
-
 // Marks the chances: instructions whose results are what dither is made of.
 class Chances {
  public:
@@ -138,9 +130,9 @@ std::vector<bool> find_dither(const ir::Module& module) {
     return std::vector<bool>(module.main().values.size());
   // What is gone with the chances' operands was wanted for them alone.
   passes::remove_dead(of_chance);
-  std::vector<bool> found = differing(of_chance), before(found.size()), after(found.size());
-  find_defined(module.main().body, before);
-  find_defined(of_chance.main().body, after);
+  std::vector<bool> found = differing(of_chance);
+  const std::vector<bool> before = defined_values(module.main()),
+                          after = defined_values(of_chance.main());
   for (std::size_t value = 0; value < found.size(); ++value)
     if (before[value] && !after[value]) found[value] = true;
   return found;

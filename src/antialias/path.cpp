@@ -12,6 +12,7 @@
 #include <span>
 
 #include "antialias/fine.h"
+#include "ir/expectations.h"
 #include "passes/emit.h"
 
 namespace pse::antialias {
@@ -255,6 +256,7 @@ void add_path(ir::Module& module, const Decisions& decisions) {
 }
 
 void remove_checks(ir::Module& module) {
+  ir::drop_expectations(module);
   for (Function& function : module.functions) remove_checks(function.body);
 }
 

@@ -26,7 +26,7 @@ void add_path(ir::Module& module, const Decisions& decisions);
 
 // Whether anything in the module can fail.
 bool has_checks(const ir::Module& module);
-// Removes the checks: for samples that the user has not asked for.
+// Removes the checks and expectations: for samples that the user has not asked for.
 void remove_checks(ir::Module& module);
 
 }  // namespace pse::antialias

@@ -5,18 +5,27 @@
 
 #include "antialias/force.h"
 #include "antialias/path.h"
+#include "ir/expectations.h"
 #include "passes/passes.h"
 
 namespace pse::antialias {
 
 std::expected<Programs, std::string> compile_programs(CompiledFront front,
                                                       const CompileOptions& options, Mode mode,
-                                                      const InputChanges& changes) {
+                                                      const InputChanges& changes,
+                                                      Expectations expectations) {
   // For all but the program that is shown, whose passes may be watched.
   const CompileOptions plain{.codegen = options.codegen,
                              .tier = options.tier,
                              .interpret = options.interpret,
                              .optimize = options.optimize};
+  if (expectations == Expectations::reported && ir::has_expectations(front.module)) {
+    // Those alone whose values the outputs need.
+    passes::remove_dead(front.module, {.arrays = false, .functions = false});
+    passes::settle_expectations(front.module);
+  } else {
+    ir::drop_expectations(front.module);
+  }
   Programs programs;
   programs.outputs = front.module.outputs.size();
   const auto finish = [&](CompiledFront&& with_checks) -> std::expected<Programs, std::string> {

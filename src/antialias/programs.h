@@ -39,11 +39,16 @@ struct Programs {
   bool has_only_noise = false;
 };
 
+// What becomes of a program's expectations (ir/expectations.h): reported by the host, which binds
+// their externals, at the pixels' centres at least; or dropped.
+enum class Expectations : std::uint8_t { dropped, reported };
+
 // `changes`: what is known of the samples that the programs will run on. The error is a sentence
 // for the user.
 std::expected<Programs, std::string> compile_programs(
     CompiledFront front, const CompileOptions& options, Mode mode,
-    const InputChanges& changes = unknown_changes);
+    const InputChanges& changes = unknown_changes,
+    Expectations expectations = Expectations::dropped);
 
 // What the kernels of all of them say.
 TierSamples tier_samples(const Programs& programs);

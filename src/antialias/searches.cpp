@@ -37,6 +37,8 @@ class Searches {
   Searches(const Function& function, Decisions& found)
       : function_(function), found_(found), used_(function.values.size()) {
     find_uses(function.body, used_);
+    for (std::size_t value = 0; value < found.expected.size(); ++value)
+      if (found.expected[value]) used_[value] = false;
     found.searched.resize(function.values.size());
     found.ends.resize(function.values.size());
   }

@@ -88,6 +88,13 @@ std::span<const DocEntry> told_entries() {
       {"isnan", "isnan(a)", "true where a component is NaN", "builtin, by shape"},
       {"isfinite", "isfinite(a)", "true where no component is NaN or infinite",
        "builtin, by shape"},
+      {"require", "require(c, text)",
+       "a statement: where c is false, the run ends with the text as its error",
+       "builtin, by shape"},
+      {"expect", "expect(value, c, text, hint, function)",
+       "value; where c is false for a pixel of the picture, the render warns of the text and the "
+       "hint, at the function that is named (the last two may be left out)",
+       "builtin, by shape"},
       {"texture",
        "texture(file, u, v, layer = \"color\", filter = \"linear\", wrap = \"repeat\", "
        "width = 0)",

@@ -153,7 +153,8 @@ Exit render_command(Session& session) {
     if (!front) return Exit::program;
     auto made = antialias::compile_programs(
         std::move(*front), compile_with, options.antialias.mode,
-        surfaces ? unknown_changes : image_plane_changes(options.transform));
+        surfaces ? unknown_changes : image_plane_changes(options.transform),
+        antialias::Expectations::reported);
     if (!made) throw Failure(Exit::program, made.error());
     count_compiled(*made->shown->split, counts);
     operations.add(counts);
@@ -163,7 +164,9 @@ Exit render_command(Session& session) {
         own, requests.size() > 1 ? joined(request.knobs, known(settings, own)) : given,
         session.console);
     report(textures->load(made->shown->module()), program.sources, session);
-    parts.push_back({std::move(*made), std::move(knobs), std::move(textures)});
+    auto expectations = std::make_unique<Expectations>(made->shown->module());
+    parts.push_back(
+        {std::move(*made), std::move(knobs), std::move(textures), std::move(expectations)});
   }
   if (!stage.empty()) return Exit::ok;
   if (surfaces) surfaces->load(options, session);

@@ -58,7 +58,10 @@ RenderJob::RenderJob(Session& session, const RenderOptions& options, const Sourc
       first_names_(images.names()),
       progress_(session.console,
                 progress_style(session.arguments.text_or("progress", ""), session.console),
-                static_cast<int>(frames_.size())) {
+                static_cast<int>(frames_.size())),
+      own_expectations_(program_->module()),
+      expectations_(surfaces != nullptr ? surfaces->expectations()
+                                        : std::vector{&own_expectations_}) {
   // The picture: as asked for, as the images are, or 512 x 512.
   const auto display = images_.display();
   const Resolution size = options_.resolution.value_or(
@@ -157,6 +160,7 @@ Exit RenderJob::run_frame(int index, int frame) {
 
   // Compute.
   progress_.begin_frame(index, frame);
+  for (Expectations* expectations : expectations_) expectations->begin_frame(window_);
   if (!session_.arguments.has("quiet"))
     signals_.set_last_words(
         fmt::format("stopped at frame {}; its files are as they were\n", frame));
@@ -187,7 +191,7 @@ Exit RenderJob::run_frame(int index, int frame) {
     if (name != "-" && !image::is_movie_name(name))
       session_.console.note(fmt::format("wrote {}", name));
   signals_.set_last_words({});
-  report_not_finite(writer);
+  warn(writer);
   return Exit::ok;
 }
 
@@ -202,7 +206,9 @@ bool RenderJob::skip_done(int frame, const std::vector<std::string>& recipes) co
 
 FrameState RenderJob::frame_state(const Program& program) const {
   FrameState state = plane_state(program.module(), plane_, knobs_);
-  if (surfaces_ == nullptr) state.externals = textures_.functions();
+  if (surfaces_ != nullptr) return state;
+  state.externals = textures_.functions();
+  own_expectations_.bind(program.module(), state.externals);
   return state;
 }
 
@@ -319,8 +325,16 @@ void RenderJob::report_failure(const RunResult& result, int frame) {
   session_.console.raw_error(print_text(diagnostics, sources_, session_.console.colour()));
 }
 
-void RenderJob::report_not_finite(const FrameWriter& writer) {
+// Of the frame that is done.
+void RenderJob::warn(const FrameWriter& writer) {
   Diagnostics diagnostics;
+  find_not_finite(writer, diagnostics);
+  for (Expectations* expectations : expectations_) expectations->report(plane_.frame, diagnostics);
+  if (!diagnostics.all().empty()) progress_.finish();
+  report(diagnostics, sources_, session_);
+}
+
+void RenderJob::find_not_finite(const FrameWriter& writer, Diagnostics& diagnostics) {
   for (const NotFiniteChannel& channel : writer.not_finite()) {
     const std::string component = program_->module().outputs[channel.output].name;
     const std::string name = component.substr(0, component.find('.'));
@@ -338,8 +352,6 @@ void RenderJob::report_not_finite(const FrameWriter& writer) {
             ? "--nan black, box3 or error says what to do with them"
             : "");
   }
-  if (!diagnostics.all().empty()) progress_.finish();
-  report(diagnostics, sources_, session_);
 }
 
 }  // namespace pse::app

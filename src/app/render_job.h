@@ -39,7 +39,8 @@ class RenderJob {
   void write_snapshots(FrameWriter& writer);
   void check_channels() const;
   void report_failure(const RunResult& result, int frame);
-  void report_not_finite(const FrameWriter& writer);
+  void warn(const FrameWriter& writer);
+  void find_not_finite(const FrameWriter& writer, Diagnostics& diagnostics);
 
   Session& session_;
   const RenderOptions& options_;
@@ -60,6 +61,8 @@ class RenderJob {
   ImagePlane plane_;
   Rect window_;
   Progress progress_;
+  Expectations own_expectations_;            // of the image plane's program
+  std::vector<Expectations*> expectations_;  // of all programs
   std::vector<std::string> warned_;  // variables whose NaN has been reported
   RunStats stats_;
   bool count_operations_ = false;  // --stats: some samples are run a second time and counted

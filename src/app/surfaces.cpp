@@ -296,9 +296,16 @@ std::vector<FrameState> Surfaces::states(const Joined& joined, const ImagePlane&
       if (const auto what = surface::TraceCall::of(module.externals[i].name))
         state.externals[i] = {&surface::TraceCall::run,
                               calls_[static_cast<std::size_t>(*what)].get()};
+    part.expectations->bind(module, state.externals);
     states.push_back(std::move(state));
   }
   return states;
+}
+
+std::vector<Expectations*> Surfaces::expectations() const {
+  std::vector<Expectations*> all;
+  for (const SurfaceProgram& part : programs_) all.push_back(part.expectations.get());
+  return all;
 }
 
 // Reads what the program wants, and what that follows from; once for all frames of the same file.

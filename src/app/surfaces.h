@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "antialias/programs.h"
+#include "app/expectations.h"
 #include "app/input_images.h"
 #include "app/knobs.h"
 #include "app/render_options.h"
@@ -27,6 +28,7 @@ struct SurfaceProgram {
   antialias::Programs programs;
   std::vector<Knob> knobs;
   std::unique_ptr<Textures> textures;
+  std::unique_ptr<Expectations> expectations;
 };
 
 class Surfaces {
@@ -55,6 +57,8 @@ class Surfaces {
   std::unique_ptr<SampleSource> samples(const ir::Module& module, const ImagePlane& plane) const;
   // What a picture of these surfaces should say of them in its head.
   std::map<std::string, std::string> attributes() const;
+  // Of all programs.
+  std::vector<Expectations*> expectations() const;
   bool is_stored() const { return images_ != nullptr; }
   // Files read, with their identities.
   std::vector<std::pair<std::string, std::string>> identities() const;

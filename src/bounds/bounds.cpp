@@ -6,6 +6,7 @@
 
 #include "bounds/dependence.h"
 #include "bounds/operators.h"
+#include "ir/expectations.h"
 #include "passes/passes.h"
 
 namespace pse::bounds {
@@ -417,6 +418,7 @@ void set_known(Region& region, const ir::Module& module,
 
 void bound_outputs(ir::Module& module, const Options& options) {
   // Only what the outputs need, and of that only what the known inputs leave.
+  ir::drop_expectations(module);
   set_known(module.main().body, module, options.known);
   passes::remove_dead(module);
   passes::fold(module);

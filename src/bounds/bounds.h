@@ -25,8 +25,8 @@ struct Options {
 // sample rate it reads "NAME$lo" and "NAME$hi", for every output NAME it gives "NAME$lo" and
 // "NAME$hi": each float that the program can compute for inputs in these intervals, its roundings
 // included, lies between them. NaN is possible only where they are -infinity and infinity. What
-// cannot be bounded (functions of the host, integers taken from numbers) is anything; checks are
-// left out.
+// cannot be bounded (functions of the host, integers taken from numbers) is anything; checks
+// and expectations are left out.
 void bound_outputs(ir::Module& module, const Options& options = {});
 
 }  // namespace pse::bounds

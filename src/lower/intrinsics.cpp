@@ -10,11 +10,11 @@ namespace pse::lower {
 
 namespace {
 
-constexpr const char* names[] = {"transpose",    "count",    "size",    "min",    "max",
-                                 "select",       "any",      "all",     "array",  "texture",
-                                 "texture_size", "volume",   "number",  "vector", "identity",
-                                 "isnan",        "isfinite", "Dx",      "Dy",     "filterwidth",
-                                 "trace",        "radiance", "visible", "require"};
+constexpr const char* names[] = {"transpose",    "count",    "size",    "min",     "max",
+                                 "select",       "any",      "all",     "array",   "texture",
+                                 "texture_size", "volume",   "number",  "vector",  "identity",
+                                 "isnan",        "isfinite", "Dx",      "Dy",      "filterwidth",
+                                 "trace",        "radiance", "visible", "require", "expect"};
 
 }  // namespace
 
@@ -214,6 +214,7 @@ Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument
   if (name == "texture") return intrinsic_texture(arguments, span);
   if (name == "volume") return intrinsic_volume(arguments, span);
   if (is_scene_call(name)) return intrinsic_scene(name, arguments, span);
+  if (name == "expect") return intrinsic_expect(arguments, span);
   if (name == "min" || name == "max" || name == "any" || name == "all")
     return intrinsic_fold(name, arguments, span);
   const auto needs = [&](std::size_t count) {
@@ -232,20 +233,7 @@ Typed Lowering::call_intrinsic(const std::string& name, std::vector<CallArgument
               (constant ? fmt::format("{}", *constant) : describe(given)));
     return Typed{};
   };
-  if (name == "require") {
-    if (!needs(2)) return {};
-    const Typed condition = to_truth(arguments[0].value, arguments[0].span);
-    if (condition.is_error()) return {};
-    if (arguments[1].value.kind != Kind::text) {
-      error("argument-type", arguments[1].span, "what `require` reports is a text, this is " +
-                                                    describe(arguments[1].value));
-      return {};
-    }
-    add_check(condition.parts.front(), arguments[1].value.text, program_place(span));
-    Typed nothing;
-    nothing.kind = Kind::nothing;
-    return nothing;
-  }
+  if (name == "require") return needs(2) ? intrinsic_require(arguments, span) : Typed{};
   if (name == "select") {
     if (!needs(3)) return {};
     const Typed condition = to_truth(arguments[0].value, arguments[0].span);

@@ -138,6 +138,10 @@ class Lowering {
   Typed intrinsic_fold(const std::string& name, std::vector<CallArgument>& arguments,
                        const Span& span);
 
+  // intrinsic_checks.cpp: what programs say of their own values.
+  Typed intrinsic_require(const std::vector<CallArgument>& arguments, const Span& span);
+  Typed intrinsic_expect(const std::vector<CallArgument>& arguments, const Span& span);
+
   // intrinsics_scene.cpp: rays into the scene.
   static bool is_scene_call(const std::string& name);
   Typed intrinsic_scene(const std::string& name, std::vector<CallArgument>& arguments,

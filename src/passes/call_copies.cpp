@@ -45,7 +45,7 @@ struct CallBody::Describer {
   }
   void walk(const Instruction& in) {
     if (is_leaf(in)) return;
-    if (reads_array(in.op) || writes_array(in.op) || in.op == Op::check) movable = false;
+    if (reads_array(in.op) || writes_array(in.op) || is_effect(in)) movable = false;
     ++copy.size;
     copy.shape.insert(copy.shape.end(), {static_cast<std::int32_t>(in.op), in.imm, in.component});
     use(in.operands);

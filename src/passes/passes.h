@@ -16,6 +16,10 @@ namespace pse::passes {
 std::size_t outline(ir::Module& module, const std::vector<ir::CallRange>& calls,
                     const OutlineOptions& options = {});
 
+// settle_expectations.cpp: expectations whose values are wanted become effects that tell the host
+// of the pixel. Runs after a first remove_dead, on a module fresh from the lowering.
+void settle_expectations(ir::Module& module);
+
 // Whether the program asks for slopes once branches that constants decide are gone.
 bool asks_when_folded(ir::Module module);
 // Puts 0 in the place of each `slope`, and changes nothing else.

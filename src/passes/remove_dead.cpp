@@ -27,7 +27,7 @@ class DeadCode {
   void run(const std::vector<bool>& observed) {
     find_definitions(function_.body, nowhere);
     for (const Value value : function_.body.yields) mark(value);
-    for (const Writer& check : checks_) mark_effect(check);
+    for (const Writer& effect : effects_) mark_effect(effect);
     for (std::size_t i = 0; i < observed.size() && i < array_use_.size(); ++i) {
       if (observed[i]) mark_array(i, true);
     }
@@ -69,7 +69,7 @@ class DeadCode {
         for (const Region& inner : in.regions) find_definitions(inner, container);
       }
       define(in.results, in, container);
-      if (in.op == Op::check) checks_.push_back({&in, parent});
+      if (is_effect(in)) effects_.push_back({&in, parent});
       if (writes_array(in.op)) writers_[static_cast<std::size_t>(in.imm)].push_back({&in, parent});
     }
   }
@@ -161,7 +161,7 @@ class DeadCode {
   }
 
   bool is_needed(const Instruction& in) const {
-    if (in.op == Op::check) return true;
+    if (is_effect(in)) return true;
     const auto array = static_cast<std::size_t>(in.imm);
     if (in.op == Op::array_store) return array_use_[array] == 2;
     if (in.op == Op::array_resize) return array_use_[array] > 0;
@@ -197,7 +197,7 @@ class DeadCode {
   std::vector<bool> live_;
   std::vector<std::uint8_t> array_use_;  // 0: unused, 1: its length is read, 2: its elements are
   std::vector<std::vector<Writer>> writers_;  // per array
-  std::vector<Writer> checks_;
+  std::vector<Writer> effects_;               // checks, and reports to the host
   std::vector<Container> containers_;  // in order of appearance
   std::size_t next_container_ = 0;
   std::vector<Value> work_;

@@ -87,6 +87,10 @@ inline bool reads_array(ir::Op op) {
 inline bool writes_array(ir::Op op) {
   return op == ir::Op::array_store || op == ir::Op::array_resize;
 }
+// Ends the run or tells the host of something: it stays although nobody uses a result.
+inline bool is_effect(const ir::Instruction& in) {
+  return in.op == ir::Op::check || (in.op == ir::Op::external && in.results.empty());
+}
 inline bool has_regions(ir::Op op) { return op == ir::Op::if_ || op == ir::Op::loop; }
 // May be computed where its result is not needed, at little cost: nothing traps.
 inline bool is_cheap_and_pure(ir::Op op) { return ir::info(op).pure && !is_call(op); }

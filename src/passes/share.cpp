@@ -85,7 +85,7 @@ class Sharing {
         walk_regions(in);
       } else if (writes_array(in.op)) {
         array_state_[static_cast<std::size_t>(in.imm)] = ++state_;
-      } else if (in.op != Op::check && is_shared(in)) {
+      } else if (!is_effect(in) && is_shared(in)) {
         continue;
       }
       Instruction& place = region.body[next++];

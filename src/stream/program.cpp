@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "codegen/uniformity.h"
+#include "ir/expectations.h"
 #include "lang/parser.h"
 
 namespace pse {
@@ -57,7 +58,8 @@ std::expected<std::shared_ptr<const Program>, std::string> compile_back(
   auto program = std::make_shared<Program>(std::move(front.program));
   Clock clock;
 
-  // IR to IR.
+  // IR to IR. Expectations that nobody has settled have nobody to tell.
+  ir::release_expected_values(front.module);
   const passes::PipelineOptions pipeline{.optimize = options.optimize,
                                          .calls = std::move(front.calls),
                                          .outline = options.outline,

@@ -77,6 +77,11 @@ TEST_F(Warnings, OfNanAndInfinity) {
   governed({"bake", "v.pse", "-o", "v.vdb", "--res", "4", "-Wno-empty"}, "not-finite");
 }
 
+TEST_F(Warnings, OfDensities) {
+  file("a.pse", "function density(p)\n    return NAN\ncolor = hypertexture(density)\n");
+  governed(render({"a.pse"}), "expect");
+}
+
 TEST_F(Warnings, OfVolumes) {
   file("empty.pse", "density = 0\n");
   governed({"bake", "empty.pse", "-o", "v.vdb", "--res", "4"}, "empty");

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <mutex>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "antialias/antialias.h"
@@ -18,6 +21,9 @@ struct PictureOptions {
   bool interpret = false;
   Options antialias;
   Rect clip{};  // empty: all
+  bool reports = false;  // keep the program's expectations, and note where they fail
+  bool optimize = true;
+  passes::OutlineOptions outline;
 };
 
 struct Picture {
@@ -27,6 +33,7 @@ struct Picture {
   Counts counts;
   RunResult result;
   int width_run = 0;
+  std::set<std::pair<float, float>> noted;  // places where an expectation fails
 
   const std::vector<float>& plane(const std::string& name = "c") const {
     for (std::size_t i = 0; i < names.size(); ++i)
@@ -51,12 +58,28 @@ inline CompiledFront lowered(const std::string& text) {
   return std::move(*front);
 }
 
+// What a host does with expectations: notes px and py.
+struct Notes {
+  std::mutex mutex;
+  std::set<std::pair<float, float>>* places = nullptr;
+
+  static void call(void* self, std::int64_t count, const float* const* arguments, float* const*) {
+    auto& notes = *static_cast<Notes*>(self);
+    const std::lock_guard lock(notes.mutex);
+    for (std::int64_t i = 0; i < count; ++i)
+      notes.places->emplace(arguments[0][i], arguments[1][i]);
+  }
+};
+
 inline Picture render(const std::string& text, const PictureOptions& options = {}) {
   CompileOptions compile;
   compile.interpret = options.interpret;
   compile.codegen.width = options.vector_width;
-  const auto programs = compile_programs(lowered(text), compile, options.antialias.mode,
-                                         image_plane_changes(std::nullopt));
+  compile.optimize = options.optimize;
+  compile.outline = options.outline;
+  const auto programs = compile_programs(
+      lowered(text), compile, options.antialias.mode, image_plane_changes(std::nullopt),
+      options.reports ? Expectations::reported : Expectations::dropped);
   if (!programs) throw std::runtime_error(programs.error());
 
   const ImagePlane plane{.width = options.width, .height = options.height};
@@ -77,9 +100,12 @@ inline Picture render(const std::string& text, const PictureOptions& options = {
                                                      window.x0)] =
               tile.planes[o][(y - tile.rect.y0) * tile.rect.width() + x - tile.rect.x0];
   };
+  Notes notes{.places = &picture.noted};
   const Host host{[&](const Program& program) {
                     FrameState state;
                     set_plane_uniforms(program.module(), plane, state);
+                    state.externals.assign(program.module().externals.size(),
+                                           {&Notes::call, &notes});
                     return state;
                   },
                   [&](const ir::Module& of) { return image_plane_samples(of, plane); }};

@@ -15,6 +15,16 @@ using test::Place;
 
 constexpr float inf = std::numeric_limits<float>::infinity();
 
+// What a program expects changes no bound.
+TEST(Bounds, ExpectationsHandTheirValuesOn) {
+  const test::Bounded bounded("c = expect(2 * x, x < 0.5, \"too large\") + 1");
+  const auto [low, high] = bounded.over({-1, 0, 0}, {3, 0, 0});
+  EXPECT_LE(low, -1);
+  EXPECT_GE(low, -1.0001f);
+  EXPECT_GE(high, 7);
+  EXPECT_LE(high, 7.0001f);
+}
+
 TEST(Bounds, OfOperatorsByHand) {
   struct Case {
     const char* expression;

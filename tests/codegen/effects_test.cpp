@@ -1,4 +1,6 @@
 // Checks and functions of the host.
+#include <set>
+
 #include "kernel_fixture.h"
 
 namespace pse::testing_support {
@@ -156,6 +158,43 @@ TEST_P(Effect, ExternalsAreAskedForActiveSamplesOnly) {
     EXPECT_EQ(out[0][s], s % 3 == 0 ? 10.0f * static_cast<float>(s) : static_cast<float>(s)) << s;
   // The last vector repeats its last sample, which is not taken.
   EXPECT_EQ(asked, (std::vector<float>{0, 3, 6, 9, 12, 15, 18, 21}));
+}
+
+// One without results is told of just the active samples, in a loop and an if as well.
+TEST_P(Effect, ExternalsMayOnlyBeTold) {
+  TestProgram program;
+  ir::Module& module = program.split.module;
+  module.externals = {{"told", 1, 0}};
+  ir::Builder& b = program.build;
+  const ir::Value x = program.input(), limit = program.input(ir::Rate::frame);
+  ir::Region head, body, yes, no;
+  const ir::Value start = b.const_f32(0);
+  const ir::Value at_head = b.add_param(head, ir::Type::f32);
+  b.begin_region(head);
+  head.yields = {b.emit(Op::flt, {at_head, x})};
+  b.end_region();
+  const ir::Value turn = b.add_param(body, ir::Type::f32);
+  b.begin_region(body);
+  b.begin_region(no);
+  b.emit_multi(Op::external, {{x}}, {}, 0);
+  b.end_region();
+  b.emit_if(b.emit(Op::flt, {turn, limit}), std::move(yes), std::move(no));
+  body.yields = {b.emit(Op::fadd, {turn, b.const_f32(1)})};
+  b.end_region();
+  program.output(b.emit_loop({&start, 1}, std::move(head), std::move(body))[0]);
+  program.finish();
+  const auto kernel = compile(program, GetParam());
+  ASSERT_TRUE(kernel);
+  std::set<float> told;
+  const auto tell = [](void* user, std::int64_t count, const float* const* arguments,
+                       float* const*) {
+    static_cast<std::set<float>*>(user)->insert(arguments[0], arguments[0] + count);
+  };
+  Runner once;
+  once.state.externals = {{tell, &told}};
+  const Columns out = once(*kernel, module, {0, 16}, {counting(21)}, 21);
+  for (int s = 0; s < 21; ++s) EXPECT_EQ(out[0][s], static_cast<float>(s));
+  EXPECT_EQ(told, (std::set<float>{17, 18, 19, 20}));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Effect, ::testing::ValuesIn(all_machines()), machine_name);

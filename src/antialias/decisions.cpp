@@ -62,11 +62,10 @@ void find_defined(const Region& region, std::vector<bool>& defined) {
 std::vector<bool> find_expected(const ir::Module& module) {
   std::vector<bool> found(module.main().values.size());
   if (!ir::has_expectations(module)) return found;
+  found = defined_values(module.main());
   ir::Module bare = module;
-  passes::remove_dead(bare);
-  found = defined_values(bare.main());
   ir::drop_expectations(bare);
-  passes::remove_dead(bare);
+  passes::remove_dead(bare, {.arrays = false, .functions = false});
   const std::vector<bool> left = defined_values(bare.main());
   for (std::size_t value = 0; value < found.size(); ++value)
     if (left[value]) found[value] = false;

@@ -17,7 +17,7 @@ namespace pse {
 
 // A function of the host, called for `count` samples at once: argument a of sample i is
 // arguments[a][i], likewise results. It must be pure and thread-safe, and must treat samples
-// independently.
+// independently. One without results may keep what it is told, and must not mind being told twice.
 struct ExternalFunction {
   void (*call)(void* user, std::int64_t count, const float* const* arguments,
                float* const* results) = nullptr;

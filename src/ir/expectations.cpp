@@ -69,7 +69,8 @@ std::string expectation_name(std::int32_t check) {
 
 std::optional<std::int32_t> expectation_of(const External& external) {
   const std::string_view name = external.name;
-  if (!name.starts_with(prefix)) return {};
+  const std::int32_t wanted = external.results == 0 ? 2 : external.results + 1;
+  if (!name.starts_with(prefix) || external.arguments != wanted) return {};
   std::int32_t check = 0;
   const char* const end = name.data() + name.size();
   const auto [last, problem] = std::from_chars(name.data() + prefix.size(), end, check);

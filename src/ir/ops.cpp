@@ -94,7 +94,8 @@ constexpr std::array operators = {
            "the results of function `imm` for these operands; a called function is pure and has no "
            "inputs"},
     OpInfo{Op::external, "external", "*", "*", true,
-           "calls Module::externals[imm], a pure function of floats to floats"},
+           "calls Module::externals[imm], a pure function of floats to floats; one without results "
+           "tells the host something, and is never left out"},
     OpInfo{Op::if_, "if", "b", "*", false,
            "runs region 0 where a is true, region 1 where it is false, and gives that region's "
            "yields"},

@@ -42,7 +42,9 @@ struct OpInfo {
   // One letter each: f i b; T: any one type, the same for every T; *: see meaning.
   std::string_view operands;
   std::string_view results;   // likewise
-  bool pure;                  // no effect besides its results; may be moved, repeated or dropped
+  // No effect besides its results; may be moved, repeated or dropped. An external without results
+  // has one: passes/rewrite.h, is_effect().
+  bool pure;
   std::string_view meaning;
 };
 

@@ -63,6 +63,10 @@ TEST(Expectations, AreKnownByTheirNames) {
   for (const char* name : {"expect", "expect ", "expect -1", "expect 7a", "expect 99999999999",
                            "texture expect 7", "volume 1", ""})
     EXPECT_FALSE(ir::expectation_of({name, 2, 0})) << name;
+  // A condition and values, or a pixel.
+  EXPECT_EQ(ir::expectation_of({"expect 3", 4, 3}), 3);
+  for (const auto& [arguments, results] : {std::pair(1, 1), {2, 2}, {5, 3}, {3, 0}, {0, 0}})
+    EXPECT_FALSE(ir::expectation_of({"expect 3", arguments, results}));
 }
 
 TEST(Expectations, SettleWhereTheirValuesAreWanted) {

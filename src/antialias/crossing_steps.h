@@ -41,8 +41,7 @@ template <class V>
   V at = near;
   for (int round = 0; round < 4; ++round) {
     const V there = at + to_far, per_b = there * (2 * far - there);
-    const V b =
-        choose(size(per_b) < least, V{}, clamped((there - far) / per_b, -most_b, most_b));
+    const V b = choose(size(per_b) < least, V{}, clamped((there - far) / per_b, -most_b, most_b));
     at = (near - b * at * at) / larger(1 - 2 * b * near, V{} + 0.25f);
   }
   const V x = choose(by_first, at, at - between), beside = x + between;
@@ -54,8 +53,31 @@ template <class V>
   return choose(is_straight, first, x);
 }
 
+// Whether some output jumps towards a neighbour that neither line parts from the pixel: from both
+// it lies on the pixel's side, by more than they may bend.
+template <class V>
+[[gnu::always_inline]] inline AnswersOf<V> is_unexplained(AnswersOf<V> jumps,
+                                                          const float* const* lines,
+                                                          std::size_t i) {
+  constexpr float most_bend = 0.3f;
+  AnswersOf<V> found{};
+  if (!any(jumps)) return found;
+  for (std::size_t k = 0; k < std::size(Pixel::around); ++k) {
+    const auto dx = static_cast<float>(Pixel::around[k][0]),
+               dy = static_cast<float>(Pixel::around[k][1]);
+    AnswersOf<V> beside = (jumps & (1 << k)) != 0;
+    for (std::size_t line = 0; line < edge_outputs; line += 3) {
+      const V distance = load<V>(lines[line] + i);
+      const V step = dx * load<V>(lines[line + 1] + i) + dy * load<V>(lines[line + 2] + i);
+      beside &= size(distance) + choose(distance < 0, -step, step) > most_bend;
+    }
+    found |= beside;
+  }
+  return found;
+}
+
 template <std::size_t lanes>
-void see_nearness(const float* const* lines, std::size_t count, float reach, float farthest,
+void see_nearness(const CrossingLists& c, const float* const* lines, float reach, float farthest,
                   Nearness* nearness) {
   using V = typename LanesOf<lanes>::Floats;
   // Where no program ran there is no normal, and no line.
@@ -65,10 +87,12 @@ void see_nearness(const float* const* lines, std::size_t count, float reach, flo
   };
   constexpr auto one = static_cast<std::int32_t>(Nearness::one_edge);
   constexpr auto unclear = static_cast<std::int32_t>(Nearness::unclear);
-  for (std::size_t i = 0; i < count; i += lanes) {
+  for (std::size_t i = 0; i < c.count; i += lanes) {
     const V nearest = distance_of(0, i), second = distance_of(3, i);
-    const AnswersOf<V> is_unclear = ~(nearest <= farthest) | (second < reach);
     const AnswersOf<V> is_near = nearest < reach * 1.2f;
+    const AnswersOf<V> jumps = ~is_near & load<AnswersOf<V>>(c.jumps + i);
+    const AnswersOf<V> is_unclear =
+        ~(nearest <= farthest) | (second < reach) | is_unexplained<V>(jumps, lines, i);
     store(nearness + i, (is_unclear & unclear) | (~is_unclear & is_near & one));
   }
 }

@@ -21,13 +21,15 @@ using ir::Op;
 using ir::Region;
 using ir::Value;
 
-// All instructions but those inside of dither.
+// All instructions but those inside of dither, and whether they stand in a loop.
 template <class Visit>
-void for_each(const Region& region, const Decisions& found, const Visit& visit) {
+void for_each(const Region& region, const Decisions& found, const Visit& visit,
+              bool in_loop = false) {
   for (const Instruction& in : region.body) {
-    visit(in);
+    visit(in, in_loop);
     if (found.is_dither(in)) continue;
-    for (const Region& inner : in.regions) for_each(inner, found, visit);
+    for (const Region& inner : in.regions)
+      for_each(inner, found, visit, in_loop || in.op == Op::loop);
   }
 }
 
@@ -36,14 +38,13 @@ bool uses_noise(const ir::Module& module, const passes::Slice& slice, const Regi
     if (in.op == Op::call)
       return slice[in.results[0]] &&
              !passes::has_partials(module.functions[static_cast<std::size_t>(in.imm)].name);
-    return std::ranges::any_of(in.regions, [&](const Region& inner) {
-      return uses_noise(module, slice, inner);
-    });
+    return std::ranges::any_of(
+        in.regions, [&](const Region& inner) { return uses_noise(module, slice, inner); });
   });
 }
 
-// Whether a value is computed from noise, which folds all over the picture: from any function but
-// those of the math library.
+// Whether a value is computed from noise: from any function but those of the math library. Octave
+// by octave, as turbulence folds it, it does so all over the picture.
 bool is_of_noise(const ir::Module& module, Value value) {
   passes::Slice slice(module.main());
   slice.need(value);
@@ -122,7 +123,7 @@ Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
     return main.values[result].rate == ir::Rate::sample && !found.dithered[result] &&
            !found.expected[result];
   };
-  for_each(main.body, found, [&](const Instruction& in) {
+  for_each(main.body, found, [&](const Instruction& in, bool) {
     const Cut cut = cut_of(in.op);
     if (cut == Cut::none || in.op == Op::fabs || !differs(in)) return;
     // Of what lays a seam open the seam alone is a decision.
@@ -134,13 +135,13 @@ Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
   });
   bends.run();
   lines.run();
-  for_each(main.body, found, [&](const Instruction& in) {
+  for_each(main.body, found, [&](const Instruction& in, bool in_loop) {
     const Cut cut = cut_of(in.op);
     if (cut == Cut::none || cut == Cut::compare || !differs(in)) return;
     if (in.op == Op::fabs) found.bends[in.result()] = bends[in.result()];
     const bool may_crease = in.op == Op::fabs || cut != Cut::kink;
     found.creases[in.result()] =
-        may_crease && lines[in.result()] && !is_of_noise(module, in.operands[0]);
+        may_crease && lines[in.result()] && !(in_loop && is_of_noise(module, in.operands[0]));
   });
   find_searches(main, found);
   found.noises = find_noise(module, found, changes);

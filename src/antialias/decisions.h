@@ -26,10 +26,11 @@ std::vector<bool> defined_values(const ir::Function& function);
 
 // The cuts of the main function that differ from sample to sample, by the value that they give.
 struct Decisions {
-  std::vector<bool> forks;     // jumps, and min and max: a steep clamp is an edge to the eye
-  std::vector<bool> bends;     // abs where some jump depends on it: it bends an edge
+  std::vector<bool> forks;  // jumps, and min and max: a steep clamp is an edge to the eye
+  std::vector<bool> bends;  // abs where some jump depends on it: it bends an edge
   // Of these and of steps, those that a jump is computed from: a line that is thinner than a pixel
-  // may lie on one. None that are made of noise, or that only choose a random number.
+  // may lie on one. None that fold the octaves of a sum of noise, or that only choose a random
+  // number.
   std::vector<bool> creases;
   std::vector<bool> dithered;  // what depends on chance (dither.h): none of these is an edge
   std::vector<bool> expected;  // what expectations alone need (ir/expectations.h): likewise none

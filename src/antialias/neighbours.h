@@ -48,9 +48,15 @@ template <std::size_t count, int reach>
 class Search {
   using Values = typename LanesOf<count>::Floats;
   using Answers = AnswersOf<Values>;
+  // To the sample `by` further, and the bit of Pixel::jumps for it; 0 where there is none.
+  struct Step {
+    std::ptrdiff_t by;
+    std::int32_t bit = 0;
+  };
   // What is seen of so many pixels.
   struct Seen {
     Answers edge{}, silhouette{}, narrow{}, hidden{}, untold{};
+    Answers jumps{};  // Pixel::jumps
   };
 
  public:
@@ -62,10 +68,13 @@ class Search {
         apart_(groups_ * tile.area.height()),
         path_(tile.path()),
         ends_(tile.ends()) {
-    std::ptrdiff_t* step = steps_;
-    for (std::ptrdiff_t dx = 1; dx <= reach; ++dx) *step++ = dx;
+    Step* step = steps_;
+    for (std::ptrdiff_t dx = 1; dx <= reach; ++dx) *step++ = {dx};
     for (std::ptrdiff_t dy = 1; dy <= reach; ++dy)
-      for (std::ptrdiff_t dx = -reach; dx <= reach; ++dx) *step++ = dy * width_ + dx;
+      for (std::ptrdiff_t dx = -reach; dx <= reach; ++dx) *step++ = {dy * width_ + dx};
+    for (Step& to : steps_)
+      for (int k = 0; k < 8; k += 2)
+        if (to.by == Pixel::around[k][0] + Pixel::around[k][1] * width_) to.bit = 1 << k;
   }
 
   [[gnu::always_inline]] std::size_t run() const {
@@ -83,6 +92,8 @@ class Search {
         if (wanted == 0) continue;
         const std::uint32_t edge = mask_of(seen.edge), untold = mask_of(seen.untold & seen.edge),
                             hidden = mask_of(seen.hidden), silhouette = mask_of(seen.silhouette);
+        std::int32_t jumps[count];
+        store(jumps, seen.jumps);
         for (; wanted != 0; wanted &= wanted - 1) {
           const auto k = __builtin_ctz(wanted);
           const auto has = [&](std::uint32_t mask) { return (mask >> k & 1) != 0; };
@@ -91,7 +102,8 @@ class Search {
                      .silhouette = has(silhouette),
                      .narrow = !has(edge),
                      .hidden = has(hidden),
-                     .untold = has(untold)};
+                     .untold = has(untold),
+                     .jumps = static_cast<std::uint8_t>(jumps[k])};
         }
       }
     }
@@ -111,8 +123,8 @@ class Search {
     return ends_ == nullptr ? change : change | end_apart(here, there);
   }
 
-  // For each group of `count` samples in the tile's columns, of all rows of the area: a bit for each
-  // where the path changes along the row within reach; likewise from here to each row below.
+  // For each group of `count` samples in the tile's columns, of all rows of the area: a bit for
+  // each where the path changes along the row within reach; likewise from here to each row below.
   [[gnu::always_inline]] void see_changes() const {
     const int rows = tile_.area.height();
     std::uint16_t* to = room_.changes;
@@ -121,12 +133,14 @@ class Search {
       for (std::ptrdiff_t group = 0; group < groups_; ++group, ++to) {
         const std::ptrdiff_t here = first + group * at_once;
         Answers change{};
-        for (int k = 1; k <= reach; ++k) change |= changes(here, here - k) | changes(here, here + k);
+        for (int k = 1; k <= reach; ++k)
+          change |= changes(here, here - k) | changes(here, here + k);
         *to = static_cast<std::uint16_t>(mask_of(change != 0));
         for (int k = 1; k <= reach; ++k)
-          to[k * apart_] = row + k < rows ? static_cast<std::uint16_t>(mask_of(
-                                                changes(here, here + k * width_) != 0))
-                                          : std::uint16_t{0};
+          to[k * apart_] =
+              row + k < rows
+                  ? static_cast<std::uint16_t>(mask_of(changes(here, here + k * width_) != 0))
+                  : std::uint16_t{0};
       }
     }
   }
@@ -161,19 +175,20 @@ class Search {
     const Values value = load<Values>(plane + here), least = least_step_from(value);
     // As bits, since NaN is the largest of these.
     Answers farthest{};
-    for (const std::ptrdiff_t step : steps_)
-      farthest = larger(farthest, larger(bits(size(load<Values>(plane + here + step) - value)),
-                                         bits(size(load<Values>(plane + here - step) - value))));
+    for (const Step& to : steps_)
+      farthest = larger(farthest, larger(bits(size(load<Values>(plane + here + to.by) - value)),
+                                         bits(size(load<Values>(plane + here - to.by) - value))));
     Answers far = farthest > bits(least);
     // Of what is known to be an edge there may be more to tell.
     if (ends_ == nullptr && tile_.ids == nullptr) far &= ~seen.edge;
     if (!any(far)) return;
-    for (const std::ptrdiff_t step : steps_) see_jumps_along(seen, here, step, plane, least, far);
+    for (const Step& to : steps_) see_jumps_along(seen, here, to, plane, least, far);
   }
 
-  // To the two neighbours `step` before and behind each of those that are `far` from some neighbour.
-  [[gnu::always_inline]] void see_jumps_along(Seen& seen, std::ptrdiff_t here, std::ptrdiff_t step,
+  // To the two neighbours `to` before and behind each of those that are `far` from some neighbour.
+  [[gnu::always_inline]] void see_jumps_along(Seen& seen, std::ptrdiff_t here, const Step& to,
                                               const float* plane, Values least, Answers far) const {
+    const std::ptrdiff_t step = to.by;
     const Answers way = load<Answers>(path_ + here);
     Answers ahead = load<Answers>(path_ + here + step) != way;
     Answers back = load<Answers>(path_ + here - step) != way;
@@ -188,8 +203,9 @@ class Search {
     const Values to_ahead = apart(plane, here, step), to_back = apart(plane, here, -step);
     const Jumps<Values> found = jumps(to_ahead, to_back, least, ahead & back);
     const Answers jumps_ahead = ahead & found.ahead, jumps_back = back & found.back;
-    seen.edge |= jumps_ahead | jumps_back |
-                 ((ahead | back) & (size(to_ahead + to_back) > least_bend));
+    seen.edge |=
+        jumps_ahead | jumps_back | ((ahead | back) & (size(to_ahead + to_back) > least_bend));
+    seen.jumps |= (jumps_ahead & to.bit) | (jumps_back & (to.bit << 1));
     seen.untold |= (jumps_ahead & ends.ahead) | (jumps_back & ends.back);
     if (tile_.ids == nullptr) return;
     const float* id = tile_.ids + here;
@@ -244,8 +260,8 @@ class Search {
   const std::ptrdiff_t width_, groups_;  // of a row
   const std::ptrdiff_t apart_;           // groups of the area
   const float* const path_;
-  const float* const ends_;                        // null: there are none
-  std::ptrdiff_t steps_[directions];               // to one of each two opposite neighbours
+  const float* const ends_;  // null: there are none
+  Step steps_[directions];   // to one of each two opposite neighbours
 };
 
 template <std::size_t count, int reach>

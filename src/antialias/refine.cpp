@@ -42,7 +42,7 @@ void Refiner::find_crossings(CrossingLists& c, Work& work, RunStatus& status) co
   const float reach = options_.filter.reach(), farthest = std::max(farthest_explained, 2 * reach);
   work.flags.resize(c.count + CrossingLists::beyond);
   auto* nearness = reinterpret_cast<Nearness*>(work.flags.data());
-  steps().see_nearness(edges.lists(), c.count, reach, farthest, nearness);
+  steps().see_nearness(c, edges.lists(), reach, farthest, nearness);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < c.count; ++i) {
     bool is_kept = nearness[i] == Nearness::one_edge;
@@ -194,6 +194,7 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
     if (pixel.hidden && edges_ == nullptr) continue;
     inner.x[inner.count] = pixel.x, inner.y[inner.count] = pixel.y;
     inner.hidden[inner.count] = pixel.hidden ? 1 : 0;
+    inner.jumps[inner.count] = pixel.jumps;
     // The program knows the edges within objects, not those of the objects.
     if (pixel.silhouette || (pixel.narrow && !pixel.hidden) || pixel.untold || edges_ == nullptr)
       work.unclear.push_back({pixel});

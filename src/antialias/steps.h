@@ -32,10 +32,10 @@ struct Steps {
   // Likewise the pixels that find_fine_pixels() wants; tile.fine is not null.
   std::size_t (*find_fine)(const Tile& tile, Pixel* found);
 
-  // Of `count` places where the edges are `lines` (edge_outputs lists, derive.h): is an edge within
-  // `farthest`, are two within `reach` of the kernel?
-  void (*see_nearness)(const float* const* lines, std::size_t count, float reach, float farthest,
-                       Nearness* nearness);
+  // Of the crossings' pixels, where the edges are `lines` (edge_outputs lists, derive.h): is an
+  // edge within `farthest`, are two within `reach` of the kernel, do they explain every jump?
+  void (*see_nearness)(const CrossingLists& crossings, const float* const* lines, float reach,
+                       float farthest, Nearness* nearness);
   // From where the crossings' edges are looked at again: a little along them, on their far sides.
   void (*find_second_looks)(const CrossingLists& crossings, float reach, double* x, double* y);
   // Distances, bends, others and is_one from the edges that were seen there.

@@ -39,6 +39,12 @@ struct Pixel {
   // The program does not tell where the edges are: a search ends elsewhere, or hardly a neighbour
   // goes the same way.
   bool untold = false;
+  // Bit k: some output jumps towards neighbour k of `around`.
+  std::uint8_t jumps = 0;
+
+  // The pixels around one: every other one is opposite to the one before.
+  static constexpr int around[8][2] = {{1, 0}, {-1, 0}, {-1, 1}, {1, -1},
+                                       {0, 1}, {0, -1}, {1, 1},  {-1, -1}};
 };
 
 // Whether two values of an output look different; they do not where they are nearer than this.

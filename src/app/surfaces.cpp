@@ -8,6 +8,7 @@
 #include <numbers>
 #include <set>
 
+#include "antialias/path.h"
 #include "app/input_images.h"
 #include "app/knobs.h"
 #include "surface/shape_words.h"
@@ -197,7 +198,11 @@ Surfaces::Joined Surfaces::join(const std::vector<std::shared_ptr<const Program>
   }
   for (const int part : program_of_)
     program_of.push_back(part < 0 ? -1 : place[static_cast<std::size_t>(part)]);
-  joined.shader = std::make_shared<surface::Shader>(joined.programs, program_of, paths);
+  using Paths = surface::Shader::Paths;
+  joined.shader = std::make_shared<surface::Shader>(joined.programs, program_of,
+                                                    !paths        ? Paths::none
+                                                    : is_stored() ? Paths::of_stored
+                                                                  : Paths::of_traced);
   return joined;
 }
 
@@ -229,7 +234,9 @@ antialias::Programs Surfaces::combine(std::vector<SurfaceProgram> programs, anti
   antialias::Programs all;
   all.has_paths = mode == antialias::Mode::procedural;
   all.shown = all.quiet = add(shown, all.has_paths);
-  all.outputs = all.shown->module().outputs.size() - (all.has_paths ? 1 : 0);
+  const auto& outputs = all.shown->module().outputs;
+  const auto path = std::ranges::find(outputs, antialias::path_name, &ir::Output::name);
+  all.outputs = static_cast<std::size_t>(path - outputs.begin());
   for (const auto what : {surface::TraceCall::What::trace, surface::TraceCall::What::radiance,
                           surface::TraceCall::What::visible})
     calls_.push_back(std::make_unique<surface::TraceCall>(

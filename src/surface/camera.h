@@ -10,8 +10,8 @@ struct Camera {
   // False where the view is along `up`, so that nothing says what is upward. Along Y something
   // does: X stays to the right.
   bool has_upright() const;
-  double fov = 30;     // degrees from the picture's bottom to its top
-  double height = 0;   // orthographic where not 0: metres from bottom to top
+  double fov = 30;    // degrees from the picture's bottom to its top
+  double height = 0;  // orthographic where not 0: metres from bottom to top
 };
 
 // A camera that shows all of a box from the front, a little from above and from the right.
@@ -41,6 +41,10 @@ class Lens {
     return parallel_ ? pixel_ : pixel_ * t * dot(ray.direction, forward_);
   }
   double pixel_angle() const { return pixel_; }
+  // Grows with depth by 1 for each width of a pixel there.
+  float depth_in_pixels(float depth) const {
+    return static_cast<float>((parallel_ ? depth : std::log(std::max(depth, 1e-30f))) / pixel_);
+  }
   // Where in the picture a point is seen, in pixels, and how wide a pixel is at its depth; not
   // above 0 for what is not before the eye, and of no use then.
   struct Seen {

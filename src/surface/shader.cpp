@@ -101,10 +101,10 @@ struct Shader::Room {
 thread_local std::vector<std::unique_ptr<Shader::Room>> Shader::Room::Held::unused;
 
 Shader::Shader(std::vector<std::shared_ptr<const Program>> programs, std::vector<int> program_of,
-               bool paths)
+               Paths paths)
     : program_of_(std::move(program_of)),
       split_(std::make_shared<passes::SplitModule>()),
-      has_paths_(paths) {
+      paths_(paths) {
   for (auto& program : programs) parts_.push_back({std::move(program), {}, {}, false, 0});
   make_module();
 }
@@ -140,15 +140,19 @@ void Shader::make_module() {
     const auto found = std::ranges::find(own, name, &ir::Output::name);
     return found == own.end() ? none : static_cast<std::size_t>(found - own.begin());
   };
-  const bool has_ends = has_paths_ && std::ranges::any_of(parts_, [&](const Part& part) {
-                          return number_of(part, antialias::ends_name) != none;
-                        });
-  if (has_paths_) module.outputs.push_back({antialias::path_name});
+  const bool has_ends =
+      paths_ == Paths::of_traced ||
+      (paths_ == Paths::of_stored && std::ranges::any_of(parts_, [&](const Part& part) {
+         return number_of(part, antialias::ends_name) != none;
+       }));
+  if (paths_ != Paths::none) module.outputs.push_back({antialias::path_name});
   if (has_ends) module.outputs.push_back({antialias::ends_name});
   split_->first_slot = 0;
 
   // What is read, and where each program finds it.
   module.inputs.push_back({"id", ir::Rate::sample});
+  if (paths_ == Paths::of_traced)
+    depth_input_ = index_of(module.inputs, ir::Input{"depth", ir::Rate::sample});
   for (Part& part : parts_) {
     const ir::Module& own = part.program->module();
     const std::vector<bool> read = ir::inputs_read(own);
@@ -175,6 +179,12 @@ void Shader::make_module() {
     }
     part.first_check = static_cast<std::int32_t>(module.checks.size());
     module.checks.insert(module.checks.end(), own.checks.begin(), own.checks.end());
+  }
+  for (std::size_t c = 0; c < normal_inputs_.size(); ++c) {
+    const auto found =
+        std::ranges::find(module.inputs, "normal." + std::to_string(c), &ir::Input::name);
+    if (found != module.inputs.end())
+      normal_inputs_[c] = static_cast<std::size_t>(found - module.inputs.begin());
   }
 }
 
@@ -250,11 +260,27 @@ void Shader::run_samples(const FrameState&, RunStatus& status, Scratch&, const f
     std::fill_n(outputs[o], count, 0.0f);
   for (std::size_t k = 0; k < parts_.size(); ++k)
     if (!room.of_part[k].empty()) run_part(k, status, inputs, outputs, count, room);
-  if (!has_paths_) return;
+  if (paths_ == Paths::none) return;
   float* path = outputs[path_output_];
   for (std::int64_t i = 0; i < count; ++i) {
     const auto id = static_cast<std::uint32_t>(ids[i] * 0x9e3779p0f);
     path[i] = static_cast<float>((static_cast<std::uint32_t>(path[i]) + id) & 0xffffffu);
+  }
+  if (paths_ == Paths::of_traced && lens_ != nullptr)
+    add_folds(inputs, outputs[path_output_ + 1], count);
+}
+
+// What jumps where an object hides a part of itself, or two parts of it meet. An end jumps by .05
+// (antialias/neighbours.h).
+void Shader::add_folds(const float* const* inputs, float* ends, std::int64_t count) const {
+  constexpr float of_pixel = 0.015f;  // one pixel's width further away
+  constexpr std::array<float, 3> of_normal = {0.12f, 0.09f, 0.07f};
+  const float* depths = inputs[depth_input_];
+  for (std::int64_t i = 0; i < count; ++i) ends[i] += of_pixel * lens_->depth_in_pixels(depths[i]);
+  for (std::size_t c = 0; c < of_normal.size(); ++c) {
+    if (normal_inputs_[c] == none) continue;
+    const float* normals = inputs[normal_inputs_[c]];
+    for (std::int64_t i = 0; i < count; ++i) ends[i] += of_normal[c] * normals[i];
   }
 }
 
@@ -320,8 +346,7 @@ void Shader::radiance(std::span<const Ray> rays, double begin_width, float* cons
     if (!hits[i].found() && !shades_background()) continue;
     const double t = hits[i].found() ? hits[i].t() : 1;
     shown_rays.push_back(rays[i]), shown.push_back(hits[i]);
-    sightings.push_back(
-        {static_cast<std::uint32_t>(i), begin_width + lens_->pixel_angle() * t, t});
+    sightings.push_back({static_cast<std::uint32_t>(i), begin_width + lens_->pixel_angle() * t, t});
   }
   const ir::Module& module = split_->module;
   const auto count = static_cast<std::int64_t>(n);

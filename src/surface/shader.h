@@ -13,11 +13,13 @@ namespace pse::surface {
 class Shader : public Kernel {
  public:
   // program_of[id] is an index of `programs` for what has that id, id 0 being the background, or
-  // -1 for nothing. The last is for all greater ids too. With `paths`, one more output "$path"
-  // tells samples apart that show different objects or took different ways through their programs
-  // (antialias/path.h).
+  // -1 for nothing. The last is for all greater ids too. With paths, one more output "$path" tells
+  // samples apart that show different objects or took different ways through their programs, and
+  // "$ends" those whose searches ended elsewhere (antialias/path.h) or, of traced pictures, that
+  // show a fold of one object: a part of it that hides another, or meets it at an angle.
+  enum class Paths : std::uint8_t { none, of_stored, of_traced };
   Shader(std::vector<std::shared_ptr<const Program>> programs, std::vector<int> program_of,
-         bool paths = false);
+         Paths paths = Paths::none);
 
   // The programs as one: it reads what any of them reads at sample rate, and `id`, and sets what
   // any of them sets, and `alpha`: 1 where a program ran that does not set it.
@@ -55,6 +57,7 @@ class Shader : public Kernel {
     std::int32_t first_check = 0;
   };
   struct Room;
+  void add_folds(const float* const* inputs, float* ends, std::int64_t count) const;
   void run_part(std::size_t part, RunStatus& status, const float* const* inputs,
                 float* const* outputs, std::int64_t count, Room& room) const;
   void make_module();
@@ -64,7 +67,10 @@ class Shader : public Kernel {
   std::shared_ptr<passes::SplitModule> split_;
   std::vector<ProgramOutput> outputs_;
   std::size_t id_input_ = 0, alpha_output_ = 0, path_output_ = 0;
-  bool has_paths_ = false;
+  const Paths paths_;
+  // Of traced pictures with paths: the inputs that tell of folds.
+  std::size_t depth_input_ = 0;
+  std::array<std::size_t, 3> normal_inputs_{none, none, none};  // where some program reads them
   std::array<std::size_t, 3> color_outputs_{};
   bool has_color_ = false;
 

@@ -102,24 +102,37 @@ const std::vector<std::pair<const char*, const char*>> programs = {
      "for i in [1 .. 60]\n    s = ball(t * d)\n    t += s\n    if s < 0.0005 or t > 5 break\n"
      "c = t > 5 ? 0.1 : 1.6 - 0.4 * t\nif t < 5 and sin(9 * t * d.x) > 0\n    c += 0.3\n"},
     // A third of a pixel wide, by each of the two creases that may hold one.
-    {"lines", "t = abs(fract(4 * (x + 0.07 * y)) - 0.5)\nc = select(t < 4 * pixelsize / 6, 0, 1)\n"},
-    {"grid", "p = abs(fract(rotate([x y], 0.21) * 3) - 0.5)\n"
-             "c = select(max(p.x, p.y) > 0.5 - 0.6 * pixelsize, 0.1, 0.9)\n"},
-    {"borders", "p = 3 * [x y]\ni = floor(p)\na = 9\nb = 9\nfor k in [0 .. 8]\n"
-                "    q = i + [k % 3 - 1, floor(k / 3) - 1]\n"
-                "    d = length(p - q - [hash(q, 1) hash(q, 2)])\n    if d < a\n        b = a\n"
-                "        a = d\n    else if d < b\n        b = d\nc = select(b - a < 0.06, 0, 1)\n"},
+    {"lines",
+     "t = abs(fract(4 * (x + 0.07 * y)) - 0.5)\nc = select(t < 4 * pixelsize / 6, 0, 1)\n"},
+    {"grid",
+     "p = abs(fract(rotate([x y], 0.21) * 3) - 0.5)\n"
+     "c = select(max(p.x, p.y) > 0.5 - 0.6 * pixelsize, 0.1, 0.9)\n"},
+    {"borders",
+     "p = 3 * [x y]\ni = floor(p)\na = 9\nb = 9\nfor k in [0 .. 8]\n"
+     "    q = i + [k % 3 - 1, floor(k / 3) - 1]\n"
+     "    d = length(p - q - [hash(q, 1) hash(q, 2)])\n    if d < a\n        b = a\n"
+     "        a = d\n    else if d < b\n        b = d\nc = select(b - a < 0.06, 0, 1)\n"},
     {"cone", "p = rotate([x y], 0.3)\nc = 0.5 + atan2(p.y, p.x) / TAU\n"},
     {"sides", "q = x - 0.4 * y\nc = 0.5 + 0.4 * q / abs(q)\n"},
-    {"first", "c = 0\nfor i in [1 .. 4]\n    if length([x - i / 3 + 0.8 y]) < 0.1 * i\n"
-              "        c = 1\n        break\n"},
+    {"first",
+     "c = 0\nfor i in [1 .. 4]\n    if length([x - i / 3 + 0.8 y]) < 0.1 * i\n"
+     "        c = 1\n        break\n"},
     // Where hardly a neighbour goes the same way, two edges do not tell of the others.
-    {"crowd", "h = 0.95 - y\nc = 0.5\nif h > 0\n    d = 3 / h\n"
-              "    c = mod(floor(x * d) + floor(1.3 * d), 2)\n"},
+    {"crowd",
+     "h = 0.95 - y\nc = 0.5\nif h > 0\n    d = 3 / h\n"
+     "    c = mod(floor(x * d) + floor(1.3 * d), 2)\n"},
     // Finer than a pixel: everywhere, towards a horizon, and where there are edges.
     {"fine", "c = Noise(80 * x, 80 * y)\n"},
     {"fine far", "c = 0.5\nif y < 0\n    z = 0.5 / -y\n    c += Noise(4 * x * z, 4 * z)\n"},
-    {"fine grain", "c = 0.5\nif length([x y]) < 0.6\n    c = 0.2\nc += 0.2 * Noise(90 * x, 90 * y)\n"},
+    {"fine grain",
+     "c = 0.5\nif length([x y]) < 0.6\n    c = 0.2\nc += 0.2 * Noise(90 * x, 90 * y)\n"},
+    // Thin lines where noise folds; iterates whose slopes mislead; both jump beside what they part.
+    {"contours", "c = select(fract(12 * noise(3 * [x y 0])) < 0.1, 0, 1)\n"},
+    {"noise line", "c = select(abs(noise(4 * [x y 0])) < 0.01, 0, 1)\n"},
+    {"iterates",
+     "z = 1.4 * [x y]\nn = 0\nfor i in [1 .. 40]\n    if dot(z, z) > 4 break\n"
+     "    z = [z.x * z.x - z.y * z.y - 0.745, 2 * z.x * z.y + 0.113]\n    n = i\n"
+     "c = (n / 40) ^ 0.7\n"},
     {"pow", "c = select(pow(abs(x), 2.5) + pow(abs(y), 2.5) < 0.5, 1, 0)\n"},
 };
 

@@ -98,7 +98,7 @@ TEST_F(StepsOfAntialiasing, SearchForTheSamePixels) {
           for (std::size_t i = 0; i < pixels.size(); ++i) {
             const Pixel &a = pixels[i], &b = found[0][i];
             EXPECT_TRUE(a.x == b.x && a.y == b.y && a.silhouette == b.silhouette &&
-                        a.narrow == b.narrow && a.untold == b.untold);
+                        a.narrow == b.narrow && a.untold == b.untold && a.jumps == b.jumps);
           }
         }
       }
@@ -127,8 +127,8 @@ TEST_F(StepsOfAntialiasing, WhatIsNoEdgeIsNotUntold) {
   }
 }
 
-// Of large values steps below a hundredth of them are no edges, and neither is a bend of such steps,
-// whatever is an edge beside it.
+// Of large values steps below a hundredth of them are no edges, and neither is a bend of such
+// steps, whatever is an edge beside it.
 TEST_F(StepsOfAntialiasing, ABendOfSmallStepsIsNoEdge) {
   Row row(10);
   const Tile& tile = row.tile;
@@ -195,6 +195,7 @@ TEST_F(StepsOfAntialiasing, FollowEdgesToTheSameBits) {
       lines[0][i] = number(-0.1f, 0.1f), lines[1][i] = start.nx[i], lines[2][i] = start.ny[i];
     start.share[i] = number(0, 1), start.towards[i] = number(0, 1);
     start.turning[i] = number(0, 1);
+    start.jumps[i] = i % 3 == 0 ? 1 << i % 8 : 0;
   }
   std::vector<std::vector<std::uint32_t>> bits;
   for (const Steps* steps : runnable()) {
@@ -205,9 +206,10 @@ TEST_F(StepsOfAntialiasing, FollowEdgesToTheSameBits) {
       c.x[i] = start.x[i], c.y[i] = start.y[i], c.distance[i] = start.distance[i];
       c.nx[i] = start.nx[i], c.ny[i] = start.ny[i], c.share[i] = start.share[i];
       c.towards[i] = start.towards[i], c.turning[i] = start.turning[i];
+      c.jumps[i] = start.jumps[i];
     }
     std::vector<Nearness> nearness(count + beyond);
-    steps->see_nearness(pointers.data(), count, reach, 1.7f, nearness.data());
+    steps->see_nearness(c, pointers.data(), reach, 1.7f, nearness.data());
     std::vector<double> x(2 * count + beyond), y(x.size()), sides_x(x.size()), sides_y(x.size());
     steps->find_second_looks(c, reach, x.data(), y.data());
     steps->look_again(c, pointers.data(), reach);
@@ -229,6 +231,42 @@ TEST_F(StepsOfAntialiasing, FollowEdgesToTheSameBits) {
     EXPECT_TRUE(std::ranges::any_of(std::span(c.is_one, count), [](auto one) { return one != 0; }));
   }
   for (const auto& some : bits) EXPECT_EQ(some, bits[0]);
+}
+
+// A line to the right at 1.2 explains a jump to the right, and one that leans; not one to the left,
+// whatever the second line is, unless it lies there.
+TEST_F(StepsOfAntialiasing, AJumpThatNoLinePartsIsUnclear) {
+  struct Case {
+    int dx, dy;
+    float second;  // the distance of a line to the left
+    Nearness expected;
+  };
+  constexpr float far = 1.5f;
+  const std::vector<Case> cases = {
+      {1, 0, no_edge, Nearness::out_of_reach},  {1, 1, no_edge, Nearness::out_of_reach},
+      {1, -1, no_edge, Nearness::out_of_reach}, {0, 1, no_edge, Nearness::unclear},
+      {-1, 0, no_edge, Nearness::unclear},      {-1, 0, 0.9f, Nearness::out_of_reach},
+      {-1, 1, 0.9f, Nearness::out_of_reach},    {-1, 0, far, Nearness::unclear}};
+  for (const Steps* steps : runnable())
+    for (const auto& [dx, dy, second, expected] : cases)
+      for (const float side : {-1.0f, 1.0f}) {
+        std::vector<std::vector<float>> lines(edge_outputs, std::vector<float>(1 + beyond));
+        const float values[edge_outputs] = {side * 1.2f, -side, 0, side * second, side, 0};
+        std::vector<const float*> pointers;
+        for (std::size_t k = 0; k < edge_outputs; ++k) {
+          lines[k][0] = values[k];
+          pointers.push_back(lines[k].data());
+        }
+        Crossings room;
+        CrossingLists c = room.lists(1);
+        c.count = 1;
+        c.jumps[0] = 0;
+        for (int k = 0; k < 8; ++k)
+          if (Pixel::around[k][0] == dx && Pixel::around[k][1] == dy) c.jumps[0] = 1 << k;
+        std::vector<Nearness> nearness(1 + beyond);
+        steps->see_nearness(c, pointers.data(), 0.8f, 1.7f, nearness.data());
+        EXPECT_EQ(nearness[0], expected) << dx << ' ' << dy << ' ' << second;
+      }
 }
 
 TEST_F(StepsOfAntialiasing, SumUpSamples) {

@@ -1,0 +1,62 @@
+// Edges on traced objects that are no edges of a program: where an object hides a part of itself or
+// two parts of it meet, and where a program's own search ends elsewhere.
+#include <cmath>
+
+#include "run_pse.h"
+
+namespace pse::test {
+namespace {
+
+class SurfaceEdges : public CommandLine {
+ protected:
+  std::vector<float> render(std::vector<std::string> arguments, const std::string& antialias) {
+    arguments.insert(arguments.begin(), "render");
+    arguments.insert(arguments.end(), {"-o", "out.exr", "--float", "--antialias", antialias});
+    const Ended ended = pse(arguments);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    const image::Image made = picture("out.exr");
+    return made.planes[made.spec.find("R")];
+  }
+  static double distance(const std::vector<float>& a, const std::vector<float>& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += std::pow(a[i] - b[i], 2);
+    return std::sqrt(sum / static_cast<double>(a.size()));
+  }
+  // Nearer to many samples than 16 of them.
+  void expect_clean(const std::vector<std::string>& arguments) {
+    const std::vector<float> truth = render(arguments, "supersample=256");
+    const double ours = distance(render(arguments, "procedural"), truth);
+    EXPECT_LT(ours, distance(render(arguments, "supersample=16"), truth));
+    EXPECT_LT(ours, 0.15 * distance(render(arguments, "none"), truth));
+  }
+};
+
+// Light from the side, so that what is hidden and what hides it are of different light.
+constexpr const char* lit = "color = white * (0.1 + 0.9 * saturate(dot(normal, [0.8 0.6 0])))\n";
+
+TEST_F(SurfaceEdges, WhereATorusHidesItself) {
+  file("lit.pse", lit);
+  expect_clean({"lit.pse", "--on", "torus", "--res", "96x96", "--camera", "eye=0,2,3"});
+}
+
+// Two walls of one mesh, with normals of their own: no depth jumps.
+TEST_F(SurfaceEdges, WherePartsOfAMeshMeet) {
+  file("lit.pse", lit);
+  file("walls.obj",
+       "v -1 -1 0\nv 0.1 -1 0.5\nv 0.3 1 0.5\nv -1 1 0\nv 1 -1 0\nv 1 1 0\n"
+       "vn -0.4 0 0.9\nvn 0.5 0 0.8\n"
+       "f 1//1 2//1 3//1 4//1\nf 2//2 5//2 6//2 3//2\n");
+  expect_clean({"lit.pse", "--on", "walls.obj", "--res", "96x96"});
+}
+
+// A loop that searches within a program for objects: its ends are no output.
+TEST_F(SurfaceEdges, WhereASearchEndsElsewhere) {
+  file("search.pse",
+       "p = 3 * point\nt = 0.5 * p.x + 2\nfor i in [1 .. 40]\n"
+       "    s = abs(t - (p.y > 0.3 ? 1 : 2)) * 0.5\n    if s < 0.001 break\n    t -= s\n"
+       "color = white * t / 3\n");
+  expect_clean({"search.pse", "--on", "sphere", "--res", "64x64"});
+}
+
+}  // namespace
+}  // namespace pse::test

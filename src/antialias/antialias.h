@@ -39,7 +39,7 @@ struct Host {
 
 // As pse::execute() of programs.shown, whose state the host makes; `source` fills the tiles of
 // `options.window` and, where samples are known anywhere, up to 2 pixels around it. The sink gets
-// the planes of the program's own outputs, then up to three without meaning where there are paths.
+// the planes of the program's own outputs, then up to four without meaning where there are paths.
 // The result does not depend on tile size, threads or vector width.
 RunResult execute(const Programs& programs, const Host& host, const Options& antialias,
                   const TileSource& source, const TileSink& sink, const ExecuteOptions& options,

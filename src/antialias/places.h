@@ -50,6 +50,7 @@ struct Work {
   Found found;
   Crossings crossings;
   std::vector<Unclear> unclear;
+  std::vector<Pixel> bent;     // near to an edge that bends too much to be followed
   std::vector<Pixel> between;  // between the bends of a steep ramp
   std::vector<Pixel> fine;     // memory of find_fine_pixels()
   std::vector<Pixel> noisy;    // fine, and no edge is near

@@ -153,7 +153,8 @@ Exit render_command(Session& session) {
     if (!front) return Exit::program;
     auto made = antialias::compile_programs(
         std::move(*front), compile_with, options.antialias.mode,
-        surfaces ? unknown_changes : image_plane_changes(options.transform));
+        surfaces ? unknown_changes : image_plane_changes(options.transform),
+        options.antialias.filter);
     if (!made) throw Failure(Exit::program, made.error());
     count_compiled(*made->shown->split, counts);
     operations.add(counts);

@@ -56,7 +56,8 @@ inline Picture render(const std::string& text, const PictureOptions& options = {
   compile.interpret = options.interpret;
   compile.codegen.width = options.vector_width;
   const auto programs = compile_programs(lowered(text), compile, options.antialias.mode,
-                                         image_plane_changes(std::nullopt));
+                                         image_plane_changes(std::nullopt),
+                                         options.antialias.filter);
   if (!programs) throw std::runtime_error(programs.error());
 
   const ImagePlane plane{.width = options.width, .height = options.height};

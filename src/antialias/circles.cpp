@@ -60,7 +60,8 @@ bool meet(const std::array<Look, looks>& seen, Circle& circle) {
     const auto [least, most] = std::ranges::minmax(radii);
     return most - least;
   };
-  const auto& radii = spread(of_distance) < spread(of_square) ? of_distance : of_square;
+  const bool is_square = std::ranges::min(of_square) > 0 && spread(of_square) < spread(of_distance);
+  const auto& radii = is_square ? of_square : of_distance;
   circle.radius = (radii[0] + radii[1] + radii[2]) / looks;
   return circle.radius > 0;
 }
@@ -99,8 +100,8 @@ bool confirm(const std::array<Look, looks>& seen, Circle& circle) {
 
 }  // namespace
 
-// Shares and sides of crossing i by the circle.
-void Refiner::set_circle(const CrossingLists& c, std::size_t i, const Circle& circle) const {
+// The share and the sides of a circle.
+CrossingLists::Edge Refiner::edge_of(const Circle& circle) const {
   const auto [x, y, radius, grows] = circle;
   const float a = std::sqrt(x * x + y * y);
   const float ux = a > 1e-6f ? -x / a : 1, uy = a > 1e-6f ? -y / a : 0;
@@ -114,10 +115,12 @@ void Refiner::set_circle(const CrossingLists& c, std::size_t i, const Circle& ci
   const float outside =
       std::max(in.share < 1 ? -moment / (1 - in.share) : 0, radius + beside - a);
   const float sign = grows ? 1 : -1;
-  c.distance[i] = sign * (a - radius), c.nx[i] = sign * ux, c.ny[i] = sign * uy;
-  c.share[i] = grows ? 1 - in.share : in.share;
-  c.towards[i] = grows ? outside : -inside;
-  c.away[i] = grows ? inside : -outside;
+  return {.distance = sign * (a - radius),
+          .nx = sign * ux,
+          .ny = sign * uy,
+          .share = grows ? 1 - in.share : in.share,
+          .towards = grows ? outside : -inside,
+          .away = grows ? inside : -outside};
 }
 
 // Pixels of work.bent that have one circle's edge become crossings; of the others those are unclear
@@ -145,7 +148,7 @@ void Refiner::find_circles(CrossingLists& c, Work& work, RunStatus& status) cons
     std::size_t at = 0;
     for (const Candidate& one : open)
       for (const Look& from : one.seen) {
-        const Pixel& pixel = work.bent[one.pixel];
+        const Pixel& pixel = work.bent[one.pixel].pixel;
         places.x[at] = pixel.x + 0.5 + double(from.x);
         places.y[at++] = pixel.y + 0.5 + double(from.y);
       }
@@ -160,8 +163,18 @@ void Refiner::find_circles(CrossingLists& c, Work& work, RunStatus& status) cons
         ++at;
       }
   };
+  const auto add = [&](const Pixel& pixel, const CrossingLists::Edge& edge) {
+    c.x[c.count] = pixel.x, c.y[c.count] = pixel.y;
+    c.set(c.count, edge);
+    c.count += CrossingLists::parts(edge.share) ? 1 : 0;
+  };
+  // An edge that could be followed is what it was.
   const auto give_up = [&](const Candidate& one) {
-    work.unclear.push_back({work.bent[one.pixel]});
+    const Bent& bent = work.bent[one.pixel];
+    if (bent.is_followed)
+      add(bent.pixel, bent.edge);
+    else
+      work.unclear.push_back({bent.pixel});
   };
 
   look();
@@ -192,11 +205,7 @@ void Refiner::find_circles(CrossingLists& c, Work& work, RunStatus& status) cons
         else
           open[kept++] = one;
       } else {
-        const Pixel& pixel = work.bent[one.pixel];
-        c.x[c.count] = pixel.x, c.y[c.count] = pixel.y;
-        set_circle(c, c.count, one.circle);
-        constexpr float least_share = 0.001f;
-        c.count += c.share[c.count] > least_share && c.share[c.count] < 1 - least_share ? 1 : 0;
+        add(work.bent[one.pixel].pixel, edge_of(one.circle));
       }
     }
     open.resize(kept);

@@ -40,11 +40,26 @@ struct CrossingLists {
             .unseen = is_unseen,
             .enclosed = enclosed[i] != 0};
   }
+  // What blending reads beside the pixel.
+  struct Edge {
+    float distance, nx, ny, share, towards, away;
+  };
+  Edge edge(std::size_t i) const {
+    return {distance[i], nx[i], ny[i], share[i], towards[i], away[i]};
+  }
+  void set(std::size_t i, const Edge& edge) const {
+    distance[i] = edge.distance, nx[i] = edge.nx, ny[i] = edge.ny;
+    share[i] = edge.share, towards[i] = edge.towards, away[i] = edge.away;
+  }
+  // Whether a share is not so near to 0 or 1 that it leaves the pixel as it is.
+  static bool parts(float share) {
+    constexpr float least_share = 0.001f;
+    return share > least_share && share < 1 - least_share;
+  }
   // Number `from` of the lists that blending reads becomes number `to`.
   void move(std::size_t from, std::size_t to) const {
-    x[to] = x[from], y[to] = y[from], distance[to] = distance[from];
-    nx[to] = nx[from], ny[to] = ny[from], share[to] = share[from];
-    towards[to] = towards[from], away[to] = away[from];
+    x[to] = x[from], y[to] = y[from];
+    set(to, edge(from));
   }
 };
 

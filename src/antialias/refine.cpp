@@ -23,10 +23,10 @@ constexpr float farthest_explained = 1.7f;
 // A pixel's middle is on an edge as near as this; and nearer, it may have a way of its own, of
 // those that differ in the last bit.
 constexpr float on_edge = 0.01f, within_edge = 0.0005f;
-// A share so near to 0 or 1 leaves the pixel as it is.
-constexpr float least_share = 0.001f;
 // An edge that bends by more than this, times the kernel's reach, is taken for a circle.
-constexpr float most_turn = 0.1f;
+constexpr float least_turn = 0.1f;
+// By more than this, it is looked at from more places.
+constexpr float most_turn = 0.2f;
 
 // Whether the pixel has the lines on opposite sides.
 bool is_between(const Line& a, const Line& b) {
@@ -66,7 +66,7 @@ void Refiner::find_crossings(CrossingLists& c, bool may_bend, Work& work,
       if (nearest < reach && is_second_near)
         work.unclear.push_back({c.pixel(i), {line_of(edges, 0, i), line_of(edges, 1, i)}});
     } else if (may_bend && is_in_bend(c, i, nearness[i], nearest, std::abs(edges[3][i]), reach)) {
-      work.bent.push_back(c.pixel(i));
+      work.bent.push_back({c.pixel(i)});
       is_kept = false;
     } else if (nearness[i] == Nearness::unclear) {
       work.unclear.push_back({c.pixel(i), {line_of(edges, 0, i), line_of(edges, 1, i)}});
@@ -95,18 +95,22 @@ void Refiner::follow(CrossingLists& c, bool may_bend, Work& work, RunStatus& sta
   steps().look_again(c, edges.lists(), reach);
   settle_shares(c);
 
+  const float most_bend = most_turn / reach;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < c.count; ++i) {
     const bool is_hidden = c.hidden[i] != 0;
     if (may_bend && c.is_one[i] == 0 && !is_hidden && !(std::abs(c.other[i]) < reach)) {
-      work.bent.push_back(c.pixel(i));
+      work.bent.push_back({c.pixel(i)});
     } else if (c.is_one[i] == 0 || (is_hidden && std::abs(c.other[i]) < farthest_explained)) {
       const Line second = line_of(edges, 1, i);
       work.unclear.push_back({c.pixel(i), {c.line(i), {c.other[i], second.nx, second.ny}}});
     }
     const float share = c.share[i];
+    const bool is_one = c.is_one[i] != 0 && !is_hidden;
+    const bool is_circle = may_bend && is_one && std::abs(c.bend[i]) > most_bend;
+    if (is_circle) work.bent.push_back({c.pixel(i), true, c.edge(i)});
     c.move(i, kept);
-    kept += (c.is_one[i] != 0) & !is_hidden & (share > least_share) & (share < 1 - least_share);
+    kept += is_one & !is_circle & CrossingLists::parts(share);
   }
   c.count = kept;
 }
@@ -117,16 +121,15 @@ void Refiner::settle_shares(const CrossingLists& c) const {
   options_.filter.measure({c.distance, count}, {c.nx, count}, {c.ny, count},
                           {{c.share, count}, {c.towards, count}, {c.turning, count}});
   steps().bend_shares(c);
-  const float most_bend = most_turn / options_.filter.reach();
+  const float least_bend = least_turn / options_.filter.reach();
   for (std::size_t i = 0; i < c.count; ++i) {
     const float bend = c.bend[i];
-    if (!(std::abs(bend) > most_bend) || c.is_one[i] == 0) continue;
+    if (!(std::abs(bend) > least_bend) || c.is_one[i] == 0) continue;
     const float to_middle = c.distance[i] + 1 / bend;
-    set_circle(c, i,
-               {.x = -c.nx[i] * to_middle,
-                .y = -c.ny[i] * to_middle,
-                .radius = 1 / std::abs(bend),
-                .grows = bend > 0});
+    c.set(i, edge_of({.x = -c.nx[i] * to_middle,
+                      .y = -c.ny[i] * to_middle,
+                      .radius = 1 / std::abs(bend),
+                      .grows = bend > 0}));
   }
 }
 

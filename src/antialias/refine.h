@@ -72,7 +72,7 @@ class Refiner {
   void follow(CrossingLists& crossings, bool may_bend, Work& work, RunStatus& status) const;
   void smooth(const Tile& tile, const Work& work, Refined& result) const;
   void settle_shares(const CrossingLists& crossings) const;
-  void set_circle(const CrossingLists& crossings, std::size_t i, const Circle& circle) const;
+  CrossingLists::Edge edge_of(const Circle& circle) const;
   void find_circles(CrossingLists& crossings, Work& work, RunStatus& status) const;
   void blend(const Tile& tile, const CrossingLists& crossings, Refined& result, Work& work,
              RunStatus& status) const;

@@ -33,14 +33,9 @@ bool is_between(const Line& a, const Line& b) {
   return a.distance * b.distance * (a.nx * b.nx + a.ny * b.ny) < 0;
 }
 
-// Whether the edge may be a small circle's, which from inside looks farther than it is: the slope
-// of a squared distance is 0 in its middle.
-bool is_in_bend(const CrossingLists& c, std::size_t i, Nearness nearness, float nearest,
-                float second, float reach) {
-  if (second < reach || nearness == Nearness::one_edge) return false;
-  return nearness == Nearness::unclear || c.enclosed[i] != 0 ||
-         (reach > usual_reach && nearest < 2 * reach);
-}
+// Edges that bend look farther than they are from inside, the more so the nearer the middle is: the
+// slope of a squared distance is 0 there. Within this many reaches they are followed.
+float farthest_bent(float reach) { return (reach > usual_reach ? 2.0f : 1.7f) * reach; }
 
 }  // namespace
 
@@ -65,15 +60,18 @@ void Refiner::find_crossings(CrossingLists& c, bool may_bend, Work& work,
       is_kept = nearest < reach && !is_second_near;
       if (nearest < reach && is_second_near)
         work.unclear.push_back({c.pixel(i), {line_of(edges, 0, i), line_of(edges, 1, i)}});
-    } else if (may_bend && is_in_bend(c, i, nearness[i], nearest, std::abs(edges[3][i]), reach)) {
-      work.bent.push_back({c.pixel(i)});
-      is_kept = false;
     } else if (nearness[i] == Nearness::unclear) {
-      work.unclear.push_back({c.pixel(i), {line_of(edges, 0, i), line_of(edges, 1, i)}});
+      if (may_bend && !(std::abs(edges[3][i]) < reach))
+        work.bent.push_back({c.pixel(i)});
+      else
+        work.unclear.push_back({c.pixel(i), {line_of(edges, 0, i), line_of(edges, 1, i)}});
     } else if (nearest >= reach && is_second_near && c.unseen[i] == 0 &&
                is_between(line_of(edges, 0, i), line_of(edges, 1, i))) {
       work.between.push_back(c.pixel(i));
       is_kept = false;
+    } else if (may_bend && nearness[i] == Nearness::out_of_reach) {
+      is_kept = nearest < farthest_bent(reach);
+      if (!is_kept && c.enclosed[i] != 0) work.bent.push_back({c.pixel(i)});
     }
     // Most are out of reach or not by chance: no branch.
     c.x[kept] = c.x[i], c.y[kept] = c.y[i];

@@ -2,6 +2,7 @@
 #include "antialias/bent.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "antialias/decisions.h"
 #include "antialias/fine.h"
@@ -14,8 +15,14 @@ using ir::Op;
 using ir::Region;
 using ir::Value;
 
-// Between jumps and creases, which neighbours see.
-enum class Kind : std::uint8_t { even, linear, ratio, bent };
+// How a value changes with the place between jumps and creases, which neighbours see: not at all,
+// as a linear function, as one over a linear function, as a ratio of two, or otherwise.
+enum class Kind : std::uint8_t { even, linear, reciprocal, ratio, bent };
+struct Form {
+  Kind kind = Kind::even;
+  Value by = ir::no_value;  // of ratios: the value below
+  bool operator==(const Form&) const = default;
+};
 
 class Kinds {
  public:
@@ -25,33 +32,50 @@ class Kinds {
 
   // Of what a comparison or a step decides by.
   bool is_bent(const Instruction& in) const {
-    const Kind a = kinds_[in.operands[0]];
-    return (in.operands.size() < 2 ? a : sum(a, kinds_[in.operands[1]])) == Kind::bent;
+    const Form a = kinds_[in.operands[0]];
+    return (in.operands.size() < 2 ? a : sum(a, kinds_[in.operands[1]])).kind == Kind::bent;
   }
 
  private:
-  static Kind sum(Kind a, Kind b) {
-    const bool is_one_ratio = a == Kind::ratio || b == Kind::ratio;
-    return is_one_ratio && a != Kind::even && b != Kind::even ? Kind::bent : std::max(a, b);
+  static constexpr Form bent{Kind::bent};
+
+  static Form sum(Form a, Form b) {
+    if (a == b) return a;
+    if (a.kind == Kind::even) std::swap(a, b);
+    if (b.kind == Kind::even) return a.kind == Kind::reciprocal ? Form{Kind::ratio, a.by} : a;
+    const bool are_ratios = a.by != ir::no_value && a.by == b.by;
+    return are_ratios ? Form{Kind::ratio, a.by} : bent;
   }
-  static Kind product(Kind a, Kind b) {
-    return a != Kind::even && b != Kind::even ? Kind::bent : std::max(a, b);
+  static Form product(Form a, Form b) {
+    if (b.kind == Kind::even) return a;
+    if (a.kind == Kind::even) return b;
+    if (a.kind == Kind::linear && b.kind == Kind::reciprocal) return {Kind::ratio, b.by};
+    if (b.kind == Kind::linear && a.kind == Kind::reciprocal) return {Kind::ratio, a.by};
+    return bent;
   }
-  static Kind quotient(Kind a, Kind b) {
-    if (b == Kind::even) return a;
-    return a <= Kind::linear && b == Kind::linear ? Kind::ratio : Kind::bent;
+  Form quotient(const Instruction& in) const {
+    const Form a = kinds_[in.operands[0]], b = kinds_[in.operands[1]];
+    if (b.kind == Kind::even) return a;
+    if (b.kind != Kind::linear || a.kind > Kind::linear) return bent;
+    return {a.kind == Kind::even ? Kind::reciprocal : Kind::ratio, in.operands[1]};
+  }
+  // One or the other, by pieces.
+  static Form either(Form a, Form b) {
+    if (a == b || b.kind == Kind::even) return a;
+    if (a.kind == Kind::even) return b;
+    return a.kind == Kind::bent || b.kind == Kind::bent ? bent : Form{Kind::ratio};
   }
 
-  Kind kind_of(const Instruction& in) const {
+  Form form_of(const Instruction& in) const {
     const auto of = [&](std::size_t k) { return kinds_[in.operands[k]]; };
-    const auto most = [&](std::size_t from) {
-      Kind kind = Kind::even;
-      for (std::size_t k = from; k < in.operands.size(); ++k) kind = std::max(kind, of(k));
-      return kind;
+    const auto any = [&](std::size_t from) {
+      Form form;
+      for (std::size_t k = from; k < in.operands.size(); ++k) form = either(form, of(k));
+      return form;
     };
     switch (in.op) {
       case Op::input:
-        return Kind::linear;
+        return {Kind::linear};
       case Op::fadd:
       case Op::fsub:
         return sum(of(0), of(1));
@@ -60,20 +84,20 @@ class Kinds {
       case Op::fma:
         return sum(product(of(0), of(1)), of(2));
       case Op::fdiv:
-        return quotient(of(0), of(1));
+        return quotient(in);
       case Op::fneg:
       case Op::fabs:
       case Op::fmin:
       case Op::fmax:
-        return most(0);
+        return any(0);
       case Op::select:
-        return most(1);
+        return any(1);
       default:
         // Steps, comparisons and whole numbers change by jumps alone.
         if (main_.values[in.result()].type != ir::Type::f32 || cut_of(in.op) != Cut::none ||
             in.op == Op::i2f)
-          return Kind::even;
-        return most(0) == Kind::even ? Kind::even : Kind::bent;
+          return {};
+        return any(0).kind == Kind::even ? Form{} : bent;
     }
   }
 
@@ -85,11 +109,11 @@ class Kinds {
         for (const Region& inner : in.regions) walk(inner);
         for (std::size_t k = 0; k < in.results.size(); ++k)
           kinds_[in.results[k]] =
-              std::max(kinds_[in.regions[0].yields[k]], kinds_[in.regions[1].yields[k]]);
+              either(kinds_[in.regions[0].yields[k]], kinds_[in.regions[1].yields[k]]);
       } else if (!in.results.empty()) {
         const bool differs = main_.values[in.results[0]].rate == ir::Rate::sample;
-        const Kind kind = differs ? kind_of(in) : Kind::even;
-        for (const Value result : in.results) kinds_[result] = kind;
+        const Form form = differs ? form_of(in) : Form{};
+        for (const Value result : in.results) kinds_[result] = form;
       }
     }
   }
@@ -106,7 +130,7 @@ class Kinds {
       walk(head);
       walk(body);
       for (std::size_t k = 0; k < loop.results.size(); ++k) {
-        const Kind after = std::max(kinds_[loop.results[k]], kinds_[body.yields[k]]);
+        const Form after = either(kinds_[loop.results[k]], kinds_[body.yields[k]]);
         changed = changed || after != kinds_[loop.results[k]];
         kinds_[loop.results[k]] = after;
       }
@@ -114,7 +138,7 @@ class Kinds {
   }
 
   const ir::Function& main_;
-  std::vector<Kind> kinds_;
+  std::vector<Form> kinds_;
 };
 
 void mark_bent(const Region& region, const Kinds& kinds, const Decisions& decisions,

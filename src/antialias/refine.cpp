@@ -23,7 +23,8 @@ constexpr float farthest_explained = 1.7f;
 // A pixel's middle is on an edge as near as this; and nearer, it may have a way of its own, of
 // those that differ in the last bit.
 constexpr float on_edge = 0.01f, within_edge = 0.0005f;
-// An edge that bends by more than this, times the kernel's reach, is taken for a circle.
+// An edge that bends by more than this, times the kernel's reach, is taken for a circle where the
+// kernel is not round.
 constexpr float least_turn = 0.1f;
 // By more than this, it is looked at from more places.
 constexpr float most_turn = 0.2f;
@@ -35,7 +36,10 @@ bool is_between(const Line& a, const Line& b) {
 
 // Edges that bend look farther than they are from inside, the more so the nearer the middle is: the
 // slope of a squared distance is 0 there. Within this many reaches they are followed.
-float farthest_bent(float reach) { return (reach > usual_reach ? 2.0f : 1.7f) * reach; }
+float farthest_bent(float reach) {
+  const float reaches = reach > usual_reach ? 2.0f : reach > 0.6f ? 1.7f : 1.2f;
+  return reaches * reach;
+}
 
 }  // namespace
 
@@ -119,6 +123,7 @@ void Refiner::settle_shares(const CrossingLists& c) const {
   options_.filter.measure({c.distance, count}, {c.nx, count}, {c.ny, count},
                           {{c.share, count}, {c.towards, count}, {c.turning, count}});
   steps().bend_shares(c);
+  if (options_.filter.is_round()) return;
   const float least_bend = least_turn / options_.filter.reach();
   for (std::size_t i = 0; i < c.count; ++i) {
     const float bend = c.bend[i];

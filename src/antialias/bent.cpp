@@ -142,7 +142,7 @@ class Kinds {
 };
 
 void mark_bent(const Region& region, const Kinds& kinds, const Decisions& decisions,
-          std::vector<bool>& bent) {
+               std::vector<bool>& bent) {
   for (const Instruction& in : region.body) {
     for (const Region& inner : in.regions) mark_bent(inner, kinds, decisions, bent);
     if (in.results.size() != 1 || !decisions.forks[in.result()]) continue;

@@ -106,14 +106,13 @@ CrossingLists::Edge Refiner::edge_of(const Circle& circle) const {
   const float a = std::sqrt(x * x + y * y);
   const float ux = a > 1e-6f ? -x / a : 1, uy = a > 1e-6f ? -y / a : 0;
   const Filter::Within in = options_.filter.within(x, y, radius);
-  // The middles of both sides, from the pixel's centre away from the circle's: where the ring around
-  // a disc has its middle within the disc, a place at its side.
+  // The middles of both sides, from the pixel's centre away from the circle's: where the ring
+  // around a disc has its middle within the disc, a place at its side.
   constexpr float beside = 0.05f, inmost = 0.97f;
   const float moment = in.x * ux + in.y * uy;
-  const float inside = std::clamp(in.share > 0 ? moment / in.share : -a, -inmost * radius - a,
-                                  inmost * radius - a);
-  const float outside =
-      std::max(in.share < 1 ? -moment / (1 - in.share) : 0, radius + beside - a);
+  const float inside =
+      std::clamp(in.share > 0 ? moment / in.share : -a, -inmost * radius - a, inmost * radius - a);
+  const float outside = std::max(in.share < 1 ? -moment / (1 - in.share) : 0, radius + beside - a);
   const float sign = grows ? 1 : -1;
   return {.distance = sign * (a - radius),
           .nx = sign * ux,
@@ -139,7 +138,8 @@ void Refiner::find_circles(CrossingLists& c, Work& work, RunStatus& status) cons
     open[i].pixel = i;
     constexpr float turns[looks][2] = {{0.93f, 0.37f}, {-0.78f, 0.62f}, {-0.15f, -0.99f}};
     for (std::size_t k = 0; k < looks; ++k)
-      open[i].seen[k].x = away * reach * turns[k][0], open[i].seen[k].y = away * reach * turns[k][1];
+      open[i].seen[k].x = away * reach * turns[k][0],
+      open[i].seen[k].y = away * reach * turns[k][1];
   }
   // Asks at the places of all; false where another edge is near, or none.
   const auto look = [&] {

@@ -14,7 +14,6 @@
 namespace pse::antialias {
 namespace {
 
-
 // Gauss and Legendre's twelve places z of [0, 1] as z (2 - z), and their weights: a root at the far
 // end of the integral becomes smooth.
 constexpr std::array<std::array<float, 2>, 12> nodes = {{{0.0183543632f, 0.0467403947f},

@@ -42,9 +42,10 @@ struct Programs {
 // `changes`: what is known of the samples that the programs will run on; `filter`: the kernel whose
 // reach unseen edges are looked for in, if it is above a pixel's. The error is a sentence for the
 // user.
-std::expected<Programs, std::string> compile_programs(
-    CompiledFront front, const CompileOptions& options, Mode mode,
-    const InputChanges& changes = unknown_changes, const Filter& filter = Filter());
+std::expected<Programs, std::string> compile_programs(CompiledFront front,
+                                                      const CompileOptions& options, Mode mode,
+                                                      const InputChanges& changes = unknown_changes,
+                                                      const Filter& filter = Filter());
 
 // What the kernels of all of them say.
 TierSamples tier_samples(const Programs& programs);

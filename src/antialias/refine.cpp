@@ -34,6 +34,8 @@ bool is_between(const Line& a, const Line& b) {
   return a.distance * b.distance * (a.nx * b.nx + a.ny * b.ny) < 0;
 }
 
+constexpr CrossingLists::Edge out_of_reach = {.share = 1};
+
 // Edges that bend look farther than they are from inside, the more so the nearer the middle is: the
 // slope of a squared distance is 0 there. Within this many reaches they are followed.
 float farthest_bent(float reach) {
@@ -44,8 +46,7 @@ float farthest_bent(float reach) {
 }  // namespace
 
 // Of the pixels, those with one edge within reach stay.
-void Refiner::find_crossings(CrossingLists& c, bool may_bend, Work& work,
-                             RunStatus& status) const {
+void Refiner::find_crossings(CrossingLists& c, bool may_bend, Work& work, RunStatus& status) const {
   Places& places = work.places;
   places.resize(c.count);
   for (std::size_t i = 0; i < c.count; ++i) places.x[i] = c.x[i] + 0.5, places.y[i] = c.y[i] + 0.5;
@@ -75,7 +76,8 @@ void Refiner::find_crossings(CrossingLists& c, bool may_bend, Work& work,
       is_kept = false;
     } else if (may_bend && nearness[i] == Nearness::out_of_reach) {
       is_kept = nearest < farthest_bent(reach);
-      if (!is_kept && c.enclosed[i] != 0) work.bent.push_back({c.pixel(i)});
+      // What is no circle stays out of reach.
+      if (!is_kept && c.enclosed[i] != 0) work.bent.push_back({c.pixel(i), true, out_of_reach});
     }
     // Most are out of reach or not by chance: no branch.
     c.x[kept] = c.x[i], c.y[kept] = c.y[i];
@@ -231,7 +233,8 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
     inner.unseen[inner.count] = pixel.unseen ? 1 : 0;
     inner.enclosed[inner.count] = pixel.enclosed ? 1 : 0;
     // The program knows the edges within objects, not those of the objects.
-    if (pixel.silhouette || (pixel.narrow && !pixel.hidden && !pixel.unseen) || pixel.untold || edges_ == nullptr)
+    if (pixel.silhouette || (pixel.narrow && !pixel.hidden && !pixel.unseen) || pixel.untold ||
+        edges_ == nullptr)
       work.unclear.push_back({pixel});
     else
       ++inner.count;

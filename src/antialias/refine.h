@@ -67,8 +67,7 @@ class Refiner {
   Refined supersample(std::vector<Pixel> pixels, Work& work, RunStatus& status) const;
 
  private:
-  void find_crossings(CrossingLists& crossings, bool may_bend, Work& work,
-                      RunStatus& status) const;
+  void find_crossings(CrossingLists& crossings, bool may_bend, Work& work, RunStatus& status) const;
   void follow(CrossingLists& crossings, bool may_bend, Work& work, RunStatus& status) const;
   void smooth(const Tile& tile, const Work& work, Refined& result) const;
   void settle_shares(const CrossingLists& crossings) const;

@@ -65,9 +65,12 @@ TEST(Filter, WhatACircleHolds) {
             share += 1.0 / count, at_x += px / count, at_y += py / count;
           }
           const Filter::Within in = filter.within(x, y, radius);
-          EXPECT_NEAR(in.share, share, 1.5e-3) << static_cast<int>(kind) << ' ' << radius << ' ' << away;
-          EXPECT_NEAR(in.x, at_x, 1.5e-3 * filter.reach()) << static_cast<int>(kind) << ' ' << radius;
-          EXPECT_NEAR(in.y, at_y, 1.5e-3 * filter.reach()) << static_cast<int>(kind) << ' ' << radius;
+          EXPECT_NEAR(in.share, share, 1.5e-3)
+              << static_cast<int>(kind) << ' ' << radius << ' ' << away;
+          EXPECT_NEAR(in.x, at_x, 1.5e-3 * filter.reach())
+              << static_cast<int>(kind) << ' ' << radius;
+          EXPECT_NEAR(in.y, at_y, 1.5e-3 * filter.reach())
+              << static_cast<int>(kind) << ' ' << radius;
         }
       // A large one is straight.
       EXPECT_NEAR(filter.within(60.1f, 0, 60).share, filter.share(-0.1f, 1, 0), 5e-3);

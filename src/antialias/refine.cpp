@@ -111,7 +111,8 @@ void Refiner::follow(CrossingLists& c, bool may_bend, Work& work, RunStatus& sta
     }
     const float share = c.share[i];
     const bool is_one = c.is_one[i] != 0 && !is_hidden;
-    const bool is_circle = may_bend && is_one && std::abs(c.bend[i]) > most_bend;
+    const bool is_circle =
+        may_bend && is_one && (std::abs(c.bend[i]) > most_bend || c.enclosed[i] != 0);
     if (is_circle) work.bent.push_back({c.pixel(i), true, c.edge(i)});
     c.move(i, kept);
     kept += is_one & !is_circle & CrossingLists::parts(share);

@@ -46,7 +46,12 @@ class Execution {
         counts_(counts),
         tiling_(options.window, options.tile_width, options.tile_height),
         paths_end_(programs.shown->module().outputs.size()) {
-    if (paths_end_ > 0 && programs.shown->module().outputs.back().name == fine_name) --paths_end_;
+    const auto& names = programs.shown->module().outputs;
+    const auto take_last = [&](const char* name) {
+      return paths_end_ > 0 && names[paths_end_ - 1].name == name ? --paths_end_ : nowhere;
+    };
+    bent_ = take_last(bent_name);
+    fine_ = take_last(fine_name);
   }
 
   RunResult run() {
@@ -109,6 +114,7 @@ class Execution {
       if (status.failed_check >= 0 || status.cancel) return;
       Tile tile{tiling_.rect(number), area(number), outputs.first(paths_end_), programs_.outputs};
       if (fine != nowhere) tile.fine = outputs[fine];
+      if (bent_ != nowhere && !stored_) tile.bent = outputs[bent_];
       if (id != inputs_of.end())
         tile.ids = inputs[static_cast<std::size_t>(id - inputs_of.begin())];
       if (!supersample_ && !procedural_) return;
@@ -152,15 +158,14 @@ class Execution {
   // all of the picture and not fine.
   std::size_t find_fine(const PlaceRunner& runner) const {
     const ir::Module& module = programs_.quiet->module();
-    const std::size_t fine = paths_end_;
-    if (fine == module.outputs.size()) return nowhere;
-    const ir::Value value = module.main().body.yields[fine];
-    if (module.main().values[value].rate == ir::Rate::sample) return fine;
+    if (fine_ == nowhere) return nowhere;
+    const ir::Value value = module.main().body.yields[fine_];
+    if (module.main().values[value].rate == ir::Rate::sample) return fine_;
     Work work;
     work.places.resize(1);
     work.places.x[0] = options_.window.x0 + 0.5, work.places.y[0] = options_.window.y0 + 0.5;
     RunStatus unchecked{.outer = &status_};
-    return runner.run(work, unchecked)[fine][0] > most_move_squared ? fine : nowhere;
+    return runner.run(work, unchecked)[fine_][0] > most_move_squared ? fine_ : nowhere;
   }
 
   // The program with its checks on the tile alone: what is outside of the picture cannot fail.
@@ -286,6 +291,7 @@ class Execution {
   const Tiling tiling_;
   static constexpr auto nowhere = static_cast<std::size_t>(-1);
   std::size_t paths_end_;  // outputs before this are the program's own, their path and ends
+  std::size_t fine_ = nowhere, bent_ = nowhere;  // outputs of path.h, if there are any
   int apron_ = 0;
   bool procedural_ = false, supersample_ = false, stored_ = false;
   const Placed* quiet_ = nullptr;

@@ -6,11 +6,13 @@
 //   path       the program with one more output: which way each sample takes; and where it marches
 //              by a loop, one of what that ended with
 //   fine       noise that is finer than a pixel
+//   bent       edges that may lie between the samples, unseen
 //   derive     the program that gives the edges around a sample (rules, activity, rotate,
 //              edge_state)
 //   programs   compiling both
 //   tile       neighbours with different paths, across which the picture jumps
-//   refine     one edge: both sides and the kernel's share (filter); more: supersample (spread)
+//   refine     one edge: both sides and the kernel's share (filter); edges that bend within
+//              the kernel (circles, filter_circle); more: supersample (spread)
 //   steps      what is done for many pixels at once, compiled for each kind of processor
 //              (neighbours, fine_steps, crossing_steps, sample_steps)
 //   places     running a program anywhere (stream/sample_source.h)
@@ -39,7 +41,7 @@ struct Host {
 
 // As pse::execute() of programs.shown, whose state the host makes; `source` fills the tiles of
 // `options.window` and, where samples are known anywhere, up to 2 pixels around it. The sink gets
-// the planes of the program's own outputs, then up to three without meaning where there are paths.
+// the planes of the program's own outputs, then up to four without meaning where there are paths.
 // The result does not depend on tile size, threads or vector width.
 RunResult execute(const Programs& programs, const Host& host, const Options& antialias,
                   const TileSource& source, const TileSink& sink, const ExecuteOptions& options,

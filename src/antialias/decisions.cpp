@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "antialias/bent.h"
 #include "antialias/dither.h"
 #include "antialias/fine.h"
 #include "antialias/seams.h"
@@ -146,6 +147,8 @@ Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
   find_searches(main, found);
   found.noises = find_noise(module, found, changes);
   found.any_noise = std::ranges::find(found.noises, true) != found.noises.end();
+  found.bent = find_bent(module, found, changes);
+  found.any_bent = std::ranges::find(found.bent, true) != found.bent.end();
   return found;
 }
 

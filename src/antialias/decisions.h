@@ -37,9 +37,11 @@ struct Decisions {
   std::vector<bool> searched;  // the conditions of loops that search
   std::vector<bool> ends;      // the results of these that are used
   std::vector<bool> noises;    // calls of noise that may be finer than a pixel (fine.h)
+  std::vector<bool> bent;      // jumps that no pixel's middle may show (bent.h)
   bool any = false;            // whether there is a fork
   bool any_jump = false;
   bool any_noise = false;
+  bool any_bent = false;
 
   // Whether an if or a loop goes its way by chance, and with it all that stands inside.
   bool is_dither(const ir::Instruction& in) const {

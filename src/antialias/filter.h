@@ -31,6 +31,8 @@ class Filter {
   float reach(float nx, float ny) const;
   float reach() const;  // in any direction
 
+  bool is_round() const { return kind_ != FilterKind::box; }
+
   // Of a place under the kernel, along any direction; in pixels squared.
   float variance() const;
 
@@ -55,10 +57,20 @@ class Filter {
   void measure(std::span<const float> d, std::span<const float> nx, std::span<const float> ny,
                const Measures& measures) const;
 
+  // What lies within a circle: its share of the kernel, and the share's first moment.
+  struct Within {
+    float share, x, y;
+  };
+  // The circle's middle is (x, y) pixels from the kernel's; exact to 1e-4 (filter_circle.cpp).
+  Within within(float x, float y, float radius) const;
+
   // An offset from the centre for a point of the unit square, such that all have equal weight.
   std::array<float, 2> place(float u, float v) const;
 
  private:
+  Within box_within(float x, float y, float radius) const;
+  float mass_per_square(float square) const;
+
   FilterKind kind_;
   float scale_;
 };

@@ -27,7 +27,8 @@ class Noises {
         changes_(changes),
         found_(main_.values.size()) {}
 
-  std::vector<bool> find() && {
+  std::vector<bool> find(const std::vector<bool>* wanted = nullptr) && {
+    wanted_ = wanted;
     walk(main_.body);
     return std::move(found_);
   }
@@ -35,10 +36,15 @@ class Noises {
  private:
   void walk(const Region& region) {
     for (const Instruction& in : region.body) {
-      if (in.op == Op::call && is_noise(in)) found_[in.results[0]] = is_cheap(in);
+      if (is_wanted(in)) found_[in.results[0]] = is_cheap(in);
       if (decisions_.is_dither(in) || (in.op == Op::loop && !has_known_turns(in))) continue;
       for (const Region& inner : in.regions) walk(inner);
     }
+  }
+
+  bool is_wanted(const Instruction& in) const {
+    if (wanted_ == nullptr) return in.op == Op::call && is_noise(in);
+    return in.results.size() == 1 && (*wanted_)[in.result()];
   }
 
   bool is_noise(const Instruction& call) const {
@@ -110,6 +116,7 @@ class Noises {
   const Decisions& decisions_;
   const InputChanges& changes_;
   std::vector<bool> found_;
+  const std::vector<bool>* wanted_ = nullptr;  // null: noise
 };
 
 }  // namespace
@@ -117,6 +124,11 @@ class Noises {
 std::vector<bool> find_noise(const ir::Module& module, const Decisions& decisions,
                              const InputChanges& changes) {
   return Noises(module, decisions, changes).find();
+}
+
+std::vector<bool> find_cheap(const ir::Module& module, const Decisions& decisions,
+                             const InputChanges& changes, const std::vector<bool>& wanted) {
+  return Noises(module, decisions, changes).find(&wanted);
 }
 
 Value move_squared(const passes::Emit& emit, const Instruction& call) {

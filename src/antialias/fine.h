@@ -22,6 +22,11 @@ struct Decisions;
 std::vector<bool> find_noise(const ir::Module& module, const Decisions& decisions,
                              const InputChanges& changes);
 
+// Likewise of the instructions with one result that are wanted, those whose slopes are cheap to
+// tell.
+std::vector<bool> find_cheap(const ir::Module& module, const Decisions& decisions,
+                             const InputChanges& changes, const std::vector<bool>& wanted);
+
 // How far the place of a call of noise moves from pixel to pixel, squared, in lattice cells: along
 // the rows or the columns, whichever is more. Asks by `slope` instructions.
 ir::Value move_squared(const passes::Emit& emit, const ir::Instruction& call);

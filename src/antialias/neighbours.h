@@ -55,7 +55,7 @@ class Search {
   };
   // What is seen of so many pixels.
   struct Seen {
-    Answers edge{}, silhouette{}, narrow{}, hidden{}, untold{};
+    Answers edge{}, silhouette{}, narrow{}, hidden{}, unseen{}, enclosed{}, untold{};
     Answers jumps{};  // Pixel::jumps
   };
 
@@ -67,7 +67,8 @@ class Search {
         groups_((tile.rect.width() + at_once - 1) / at_once),
         apart_(groups_ * tile.area.height()),
         path_(tile.path()),
-        ends_(tile.ends()) {
+        ends_(tile.ends()),
+        bent_(tile.bent) {
     Step* step = steps_;
     for (std::ptrdiff_t dx = 1; dx <= reach; ++dx) *step++ = {dx};
     for (std::ptrdiff_t dy = 1; dy <= reach; ++dy)
@@ -87,11 +88,12 @@ class Search {
       for (std::ptrdiff_t i = 0; i < width; i += at_once, ++group) {
         if (changes_around(group) == 0) continue;
         const Seen seen = look(first + i);
-        std::uint32_t wanted = mask_of(seen.edge | seen.narrow | seen.hidden);
+        std::uint32_t wanted = mask_of(seen.edge | seen.narrow | seen.hidden | seen.unseen);
         if (width - i < at_once) wanted &= (1u << (width - i)) - 1;
         if (wanted == 0) continue;
         const std::uint32_t edge = mask_of(seen.edge), untold = mask_of(seen.untold & seen.edge),
-                            hidden = mask_of(seen.hidden), silhouette = mask_of(seen.silhouette);
+                            hidden = mask_of(seen.hidden), silhouette = mask_of(seen.silhouette),
+                            unseen = mask_of(seen.unseen), enclosed = mask_of(seen.enclosed);
         std::int32_t jumps[count];
         store(jumps, seen.jumps);
         for (; wanted != 0; wanted &= wanted - 1) {
@@ -102,6 +104,8 @@ class Search {
                      .silhouette = has(silhouette),
                      .narrow = !has(edge),
                      .hidden = has(hidden),
+                     .unseen = has(unseen),
+                     .enclosed = has(enclosed),
                      .untold = has(untold),
                      .jumps = static_cast<std::uint8_t>(jumps[k])};
         }
@@ -135,6 +139,7 @@ class Search {
         Answers change{};
         for (int k = 1; k <= reach; ++k)
           change |= changes(here, here - k) | changes(here, here + k);
+        if (bent_ != nullptr) change |= load<Answers>(bent_ + here);
         *to = static_cast<std::uint16_t>(mask_of(change != 0));
         for (int k = 1; k <= reach; ++k)
           to[k * apart_] =
@@ -166,8 +171,22 @@ class Search {
     for (std::size_t o = 0; o < tile_.outputs; ++o) see_jumps(seen, here, tile_.planes[o]);
     seen.narrow &= ~seen.edge;
     seen.hidden &= ~(seen.edge | seen.narrow);
+    if (bent_ != nullptr) see_bent(seen, here);
     if (any(seen.edge)) seen.untold |= is_crowded(here);
     return seen;
+  }
+
+  // Where edges bend within the kernel's reach.
+  [[gnu::always_inline]] void see_bent(Seen& seen, std::ptrdiff_t here) const {
+    const Answers way = load<Answers>(path_ + here);
+    Answers other{};
+    for (const Step& to : steps_) {
+      const Answers ahead = load<Answers>(path_ + here + to.by) != way;
+      const Answers back = load<Answers>(path_ + here - to.by) != way;
+      other |= ahead | back;
+      seen.enclosed |= ahead & back & seen.edge;
+    }
+    seen.unseen |= (load<Values>(bent_ + here) != 0) & ~other;
   }
 
   // Where an output jumps between ways. Most ways through a program end in the same place.
@@ -252,7 +271,9 @@ class Search {
       turns += next != last;
       last = next;
     }
-    return (alike > -least_alike) & ((turns == 0) | (turns < -4));
+    // One that all others are alike around may be in a small disc.
+    const Answers is_alone = bent_ == nullptr ? turns == 0 : Answers{};
+    return (alike > -least_alike) & (is_alone | (turns < -4));
   }
 
   const Tile& tile_;
@@ -261,6 +282,7 @@ class Search {
   const std::ptrdiff_t apart_;           // groups of the area
   const float* const path_;
   const float* const ends_;  // null: there are none
+  const float* const bent_;  // null: every edge is seen
   Step steps_[directions];   // to one of each two opposite neighbours
 };
 

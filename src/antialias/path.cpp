@@ -11,6 +11,7 @@
 #include <array>
 #include <span>
 
+#include "antialias/bent.h"
 #include "antialias/fine.h"
 #include "ir/expectations.h"
 #include "passes/emit.h"
@@ -31,12 +32,13 @@ struct Way {
   Value path;
   Value ends;  // the sum of what searches ended with; no_value inside of them
   Value fine;  // the farthest move of noise; likewise, and where there is none
+  Value bent;  // not 0: a jump that may be unseen is near; likewise
 };
 
 class Paths {
  public:
-  Paths(Function& function, const Decisions& decisions)
-      : function_(function), decisions_(decisions) {}
+  Paths(Function& function, const Decisions& decisions, float reach)
+      : function_(function), decisions_(decisions), reach_(reach) {}
 
   bool has_searches() const { return has_searches_; }
 
@@ -52,6 +54,7 @@ class Paths {
         way.path = search(in, way.path);
       else if (in.op == Op::loop)
         way = turn(in, way);
+      const std::size_t at = out.size();
       out.push_back(std::move(in));
       const Instruction& written = out.back();
       const bool jumps =
@@ -63,13 +66,15 @@ class Paths {
         way.path = outcome(Emit(function_, out), Instruction(written), way.path);
       else if (way.fine != no_value && is_noise(written))
         way.fine = with_move(Emit(function_, out), Instruction(written), way.fine);
+      if (jumps && way.bent != no_value && decisions_.bent[out[at].result()])
+        way.bent = with_edge(Emit(function_, out), Instruction(out[at]), way.bent);
     }
     region.body = std::move(out);
     return way;
   }
 
  private:
-  static constexpr std::array parts = {&Way::path, &Way::ends, &Way::fine};
+  static constexpr std::array parts = {&Way::path, &Way::ends, &Way::fine, &Way::bent};
 
   // A random number, 1 modulo 64.
   std::int32_t next_factor() {
@@ -91,6 +96,10 @@ class Paths {
   }
   static Value with_move(const Emit& emit, const Instruction& call, Value farthest) {
     return emit(Op::fmax, {farthest, move_squared(emit, call)});
+  }
+
+  Value with_edge(const Emit& emit, const Instruction& decision, Value before) const {
+    return emit.choose(is_near(emit, decision, reach_), emit.number(1), before);
   }
 
   Value outcome(const Emit& emit, const Instruction& in, Value path) {
@@ -169,7 +178,7 @@ class Paths {
 
   // A loop that searches: every turn's path begins anew.
   Value search(Instruction& in, Value before) {
-    const Value after = walk(in.regions[1], {before, no_value, no_value}).path;
+    const Value after = walk(in.regions[1], {before, no_value, no_value, no_value}).path;
     if (after == before) return before;
     carry(in, ir::Type::i32);
     return finish(in, before, after);
@@ -203,6 +212,7 @@ class Paths {
 
   Function& function_;
   const Decisions& decisions_;
+  float reach_;
   bool has_searches_ = false;
   std::uint32_t state_ = 1;
 };
@@ -230,13 +240,14 @@ bool has_checks(const ir::Module& module) {
   return false;
 }
 
-void add_path(ir::Module& module, const Decisions& decisions) {
+void add_path(ir::Module& module, const Decisions& decisions, float reach) {
   Function& main = module.main();
   std::vector<Instruction> start;
   const Emit first(main, start);
   const Value still = decisions.any_noise ? first.number(0) : no_value;
-  const Way none{first.integer(0), first.number(0), still};
-  Paths paths(main, decisions);
+  const Value straight = decisions.any_bent ? first.number(0) : no_value;
+  const Way none{first.integer(0), first.number(0), still, straight};
+  Paths paths(main, decisions, reach);
   const Way way = paths.walk(main.body, none);
   main.body.body.insert(main.body.body.begin(), std::make_move_iterator(start.begin()),
                         std::make_move_iterator(start.end()));
@@ -250,9 +261,12 @@ void add_path(ir::Module& module, const Decisions& decisions) {
     main.body.yields.push_back(way.ends);
     module.outputs.push_back({ends_name});
   }
-  if (!decisions.any_noise) return;
-  main.body.yields.push_back(way.fine);
-  module.outputs.push_back({fine_name});
+  const auto add = [&](Value value, const char* name) {
+    main.body.yields.push_back(value);
+    module.outputs.push_back({name});
+  };
+  if (decisions.any_noise) add(way.fine, fine_name);
+  if (decisions.any_bent) add(way.bent, bent_name);
 }
 
 void remove_checks(ir::Module& module) {

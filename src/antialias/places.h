@@ -45,11 +45,19 @@ struct Unclear {
   Lines lines = {};
 };
 
+// A pixel with an edge near that may be a circle's; one that could be followed has what came of it.
+struct Bent {
+  Pixel pixel;
+  bool is_followed = false;
+  CrossingLists::Edge edge = {};
+};
+
 // One thread's memory, used again from run to run.
 struct Work {
   Found found;
   Crossings crossings;
   std::vector<Unclear> unclear;
+  std::vector<Bent> bent;
   std::vector<Pixel> between;  // between the bends of a steep ramp
   std::vector<Pixel> fine;     // memory of find_fine_pixels()
   std::vector<Pixel> noisy;    // fine, and no edge is near

@@ -13,6 +13,7 @@ namespace pse::antialias {
 std::expected<Programs, std::string> compile_programs(CompiledFront front,
                                                       const CompileOptions& options, Mode mode,
                                                       const InputChanges& changes,
+                                                      const Filter& filter,
                                                       Expectations expectations) {
   // For all but the program that is shown, whose passes may be watched.
   const CompileOptions plain{.codegen = options.codegen,
@@ -78,7 +79,7 @@ std::expected<Programs, std::string> compile_programs(CompiledFront front,
     return compile_back(std::move(edges), plain);
   };
   programs.edges = std::async(when, derive).share();
-  add_path(copy.module, decisions);
+  add_path(copy.module, decisions, std::max(filter.reach(), usual_reach));
   return finish(std::move(copy));
 }
 

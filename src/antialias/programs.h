@@ -43,11 +43,12 @@ struct Programs {
 // their externals, at the pixels' centres at least; or dropped.
 enum class Expectations : std::uint8_t { dropped, reported };
 
-// `changes`: what is known of the samples that the programs will run on. The error is a sentence
-// for the user.
+// `changes`: what is known of the samples that the programs will run on; `filter`: the kernel whose
+// reach unseen edges are looked for in, if it is above a pixel's. The error is a sentence for the
+// user.
 std::expected<Programs, std::string> compile_programs(
     CompiledFront front, const CompileOptions& options, Mode mode,
-    const InputChanges& changes = unknown_changes,
+    const InputChanges& changes = unknown_changes, const Filter& filter = Filter(),
     Expectations expectations = Expectations::dropped);
 
 // What the kernels of all of them say.

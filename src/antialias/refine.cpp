@@ -23,18 +23,30 @@ constexpr float farthest_explained = 1.7f;
 // A pixel's middle is on an edge as near as this; and nearer, it may have a way of its own, of
 // those that differ in the last bit.
 constexpr float on_edge = 0.01f, within_edge = 0.0005f;
-// A share so near to 0 or 1 leaves the pixel as it is.
-constexpr float least_share = 0.001f;
+// An edge that bends by more than this, times the kernel's reach, is taken for a circle where the
+// kernel is not round.
+constexpr float least_turn = 0.1f;
+// By more than this, it is looked at from more places.
+constexpr float most_turn = 0.2f;
 
 // Whether the pixel has the lines on opposite sides.
 bool is_between(const Line& a, const Line& b) {
   return a.distance * b.distance * (a.nx * b.nx + a.ny * b.ny) < 0;
 }
 
+constexpr CrossingLists::Edge out_of_reach = {.share = 1};
+
+// Edges that bend look farther than they are from inside, the more so the nearer the middle is: the
+// slope of a squared distance is 0 there. Within this many reaches they are followed.
+float farthest_bent(float reach) {
+  const float reaches = reach > usual_reach ? 2.0f : reach > 0.6f ? 1.7f : 1.2f;
+  return reaches * reach;
+}
+
 }  // namespace
 
 // Of the pixels, those with one edge within reach stay.
-void Refiner::find_crossings(CrossingLists& c, Work& work, RunStatus& status) const {
+void Refiner::find_crossings(CrossingLists& c, bool may_bend, Work& work, RunStatus& status) const {
   Places& places = work.places;
   places.resize(c.count);
   for (std::size_t i = 0; i < c.count; ++i) places.x[i] = c.x[i] + 0.5, places.y[i] = c.y[i] + 0.5;
@@ -54,16 +66,23 @@ void Refiner::find_crossings(CrossingLists& c, Work& work, RunStatus& status) co
       if (nearest < reach && is_second_near)
         work.unclear.push_back({c.pixel(i), {line_of(edges, 0, i), line_of(edges, 1, i)}});
     } else if (nearness[i] == Nearness::unclear) {
-      work.unclear.push_back({c.pixel(i), {line_of(edges, 0, i), line_of(edges, 1, i)}});
-    } else if (nearest >= reach && is_second_near &&
+      if (may_bend && !(std::abs(edges[3][i]) < reach))
+        work.bent.push_back({c.pixel(i)});
+      else
+        work.unclear.push_back({c.pixel(i), {line_of(edges, 0, i), line_of(edges, 1, i)}});
+    } else if (nearest >= reach && is_second_near && c.unseen[i] == 0 &&
                is_between(line_of(edges, 0, i), line_of(edges, 1, i))) {
       work.between.push_back(c.pixel(i));
       is_kept = false;
+    } else if (may_bend && nearness[i] == Nearness::out_of_reach) {
+      is_kept = nearest < farthest_bent(reach);
+      // What is no circle stays out of reach.
+      if (!is_kept && c.enclosed[i] != 0) work.bent.push_back({c.pixel(i), true, out_of_reach});
     }
     // Most are out of reach or not by chance: no branch.
     c.x[kept] = c.x[i], c.y[kept] = c.y[i];
     c.distance[kept] = edges[0][i], c.nx[kept] = edges[1][i], c.ny[kept] = edges[2][i];
-    c.hidden[kept] = c.hidden[i];
+    c.hidden[kept] = c.hidden[i], c.unseen[kept] = c.unseen[i], c.enclosed[kept] = c.enclosed[i];
     kept += is_kept;
   }
   c.count = kept;
@@ -71,7 +90,7 @@ void Refiner::find_crossings(CrossingLists& c, Work& work, RunStatus& status) co
 
 // Looks at each edge again, a little along it and on its far side: how it bends, and whether there
 // is another edge.
-void Refiner::follow(CrossingLists& c, Work& work, RunStatus& status) const {
+void Refiner::follow(CrossingLists& c, bool may_bend, Work& work, RunStatus& status) const {
   const float reach = options_.filter.reach();
   Places& places = work.places;
   places.resize(c.count);
@@ -80,16 +99,23 @@ void Refiner::follow(CrossingLists& c, Work& work, RunStatus& status) const {
   steps().look_again(c, edges.lists(), reach);
   settle_shares(c);
 
+  const float most_bend = most_turn / reach;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < c.count; ++i) {
     const bool is_hidden = c.hidden[i] != 0;
-    if (c.is_one[i] == 0 || (is_hidden && std::abs(c.other[i]) < farthest_explained)) {
+    if (may_bend && c.is_one[i] == 0 && !is_hidden && !(std::abs(c.other[i]) < reach)) {
+      work.bent.push_back({c.pixel(i)});
+    } else if (c.is_one[i] == 0 || (is_hidden && std::abs(c.other[i]) < farthest_explained)) {
       const Line second = line_of(edges, 1, i);
       work.unclear.push_back({c.pixel(i), {c.line(i), {c.other[i], second.nx, second.ny}}});
     }
     const float share = c.share[i];
+    const bool is_one = c.is_one[i] != 0 && !is_hidden;
+    const bool is_circle =
+        may_bend && is_one && (std::abs(c.bend[i]) > most_bend || c.enclosed[i] != 0);
+    if (is_circle) work.bent.push_back({c.pixel(i), true, c.edge(i)});
     c.move(i, kept);
-    kept += (c.is_one[i] != 0) & !is_hidden & (share > least_share) & (share < 1 - least_share);
+    kept += is_one & !is_circle & CrossingLists::parts(share);
   }
   c.count = kept;
 }
@@ -100,6 +126,17 @@ void Refiner::settle_shares(const CrossingLists& c) const {
   options_.filter.measure({c.distance, count}, {c.nx, count}, {c.ny, count},
                           {{c.share, count}, {c.towards, count}, {c.turning, count}});
   steps().bend_shares(c);
+  if (options_.filter.is_round()) return;
+  const float least_bend = least_turn / options_.filter.reach();
+  for (std::size_t i = 0; i < c.count; ++i) {
+    const float bend = c.bend[i];
+    if (!(std::abs(bend) > least_bend) || c.is_one[i] == 0) continue;
+    const float to_middle = c.distance[i] + 1 / bend;
+    c.set(i, edge_of({.x = -c.nx[i] * to_middle,
+                      .y = -c.ny[i] * to_middle,
+                      .radius = 1 / std::abs(bend),
+                      .grows = bend > 0}));
+  }
 }
 
 // LERP(share, one side, other side), each side where the kernel's weight on it has its middle: what
@@ -177,7 +214,7 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
   Refined result({}, outputs_);
   if (found.empty() && fine.empty()) return result;
   counts.filtered += static_cast<std::int64_t>(found.size() + fine.size());
-  work.unclear.clear(), work.between.clear(), work.noisy.clear();
+  work.unclear.clear(), work.bent.clear(), work.between.clear(), work.noisy.clear();
   CrossingLists inner = work.crossings.lists(found.size());
   const auto is_before = [](const Pixel& a, const Pixel& b) {
     return a.y != b.y ? a.y < b.y : a.x < b.x;
@@ -191,20 +228,25 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
       ++next, --counts.filtered;
       continue;
     }
-    if (pixel.hidden && edges_ == nullptr) continue;
+    if ((pixel.hidden || pixel.unseen) && edges_ == nullptr) continue;
     inner.x[inner.count] = pixel.x, inner.y[inner.count] = pixel.y;
     inner.hidden[inner.count] = pixel.hidden ? 1 : 0;
     inner.jumps[inner.count] = pixel.jumps;
+    inner.unseen[inner.count] = pixel.unseen ? 1 : 0;
+    inner.enclosed[inner.count] = pixel.enclosed ? 1 : 0;
     // The program knows the edges within objects, not those of the objects.
-    if (pixel.silhouette || (pixel.narrow && !pixel.hidden) || pixel.untold || edges_ == nullptr)
+    if (pixel.silhouette || (pixel.narrow && !pixel.hidden && !pixel.unseen) || pixel.untold ||
+        edges_ == nullptr)
       work.unclear.push_back({pixel});
     else
       ++inner.count;
   }
   work.noisy.insert(work.noisy.end(), next, fine.end());
   if (inner.count > 0) {
-    find_crossings(inner, work, status);
-    follow(inner, work, status);
+    const bool may_bend = tile.bent != nullptr;
+    find_crossings(inner, may_bend, work, status);
+    follow(inner, may_bend, work, status);
+    find_circles(inner, work, status);
     blend(tile, inner, result, work, status);
   }
   counts.blended += static_cast<std::int64_t>(result.pixels.size());

@@ -2,6 +2,7 @@
 // chapter's "More Detailed Description", pixel by pixel.
 #pragma once
 
+#include "antialias/circles.h"
 #include "antialias/patterns.h"
 #include "antialias/places.h"
 #include "antialias/programs.h"
@@ -66,10 +67,12 @@ class Refiner {
   Refined supersample(std::vector<Pixel> pixels, Work& work, RunStatus& status) const;
 
  private:
-  void find_crossings(CrossingLists& crossings, Work& work, RunStatus& status) const;
-  void follow(CrossingLists& crossings, Work& work, RunStatus& status) const;
+  void find_crossings(CrossingLists& crossings, bool may_bend, Work& work, RunStatus& status) const;
+  void follow(CrossingLists& crossings, bool may_bend, Work& work, RunStatus& status) const;
   void smooth(const Tile& tile, const Work& work, Refined& result) const;
   void settle_shares(const CrossingLists& crossings) const;
+  CrossingLists::Edge edge_of(const Circle& circle) const;
+  void find_circles(CrossingLists& crossings, Work& work, RunStatus& status) const;
   void blend(const Tile& tile, const CrossingLists& crossings, Refined& result, Work& work,
              RunStatus& status) const;
   std::uint32_t count() const { return static_cast<std::uint32_t>(options_.samples); }

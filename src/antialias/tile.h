@@ -16,6 +16,7 @@ struct Tile {
   std::span<float* const> planes;  // the outputs; behind them the path, and the ends if any
   std::size_t outputs = 0;         // without these
   const float* fine = nullptr;     // of path.h; null: nothing is fine
+  const float* bent = nullptr;     // likewise; null: every edge is seen
   const float* ids = nullptr;      // of the objects that the samples show; null: there is but one
 
   std::size_t at(int x, int y) const {
@@ -36,6 +37,10 @@ struct Pixel {
   // Narrow at most: a crease lies in between. Only where another edge is near there may be
   // something.
   bool hidden = false;
+  // No pixel around goes another way, but the path says that an edge is near which bends.
+  bool unseen = false;
+  // Pixels on opposite sides go other ways, where there are edges that bend.
+  bool enclosed = false;
   // The program does not tell where the edges are: a search ends elsewhere, or hardly a neighbour
   // goes the same way.
   bool untold = false;

@@ -154,7 +154,7 @@ Exit render_command(Session& session) {
     auto made = antialias::compile_programs(
         std::move(*front), compile_with, options.antialias.mode,
         surfaces ? unknown_changes : image_plane_changes(options.transform),
-        antialias::Expectations::reported);
+        options.antialias.filter, antialias::Expectations::reported);
     if (!made) throw Failure(Exit::program, made.error());
     count_compiled(*made->shown->split, counts);
     operations.add(counts);

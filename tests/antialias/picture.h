@@ -79,7 +79,7 @@ inline Picture render(const std::string& text, const PictureOptions& options = {
   compile.outline = options.outline;
   const auto programs = compile_programs(
       lowered(text), compile, options.antialias.mode, image_plane_changes(std::nullopt),
-      options.reports ? Expectations::reported : Expectations::dropped);
+      options.antialias.filter, options.reports ? Expectations::reported : Expectations::dropped);
   if (!programs) throw std::runtime_error(programs.error());
 
   const ImagePlane plane{.width = options.width, .height = options.height};

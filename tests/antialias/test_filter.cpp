@@ -48,6 +48,40 @@ TEST(Filter, ReferenceNumbers) {
   }
 }
 
+TEST(Filter, WhatACircleHolds) {
+  for (const FilterKind kind : kinds)
+    for (const float scale : {1.0f, 1.5f}) {
+      const Filter filter(kind, scale);
+      constexpr std::uint32_t count = 1 << 14;
+      const Spread spread(3, 5);
+      for (const float radius : {0.1f, 0.4f, 0.7f, 1.3f, 4.0f})
+        for (const float away : {-0.9f, -0.3f, 0.2f, 0.5f}) {
+          const float x = 0.6f * (radius + away * filter.reach()), y = -x / 0.6f * 0.8f;
+          double share = 0, at_x = 0, at_y = 0;
+          for (std::uint32_t k = 0; k < count; ++k) {
+            const auto [u, v] = spread(k);
+            const auto [px, py] = filter.place(u, v);
+            if ((px - x) * (px - x) + (py - y) * (py - y) >= radius * radius) continue;
+            share += 1.0 / count, at_x += px / count, at_y += py / count;
+          }
+          const Filter::Within in = filter.within(x, y, radius);
+          EXPECT_NEAR(in.share, share, 1.5e-3)
+              << static_cast<int>(kind) << ' ' << radius << ' ' << away;
+          EXPECT_NEAR(in.x, at_x, 1.5e-3 * filter.reach())
+              << static_cast<int>(kind) << ' ' << radius;
+          EXPECT_NEAR(in.y, at_y, 1.5e-3 * filter.reach())
+              << static_cast<int>(kind) << ' ' << radius;
+        }
+      // A large one is straight.
+      EXPECT_NEAR(filter.within(60.1f, 0, 60).share, filter.share(-0.1f, 1, 0), 5e-3);
+      EXPECT_EQ(filter.within(4, 0, 0.5f).share, 0);
+      EXPECT_EQ(filter.within(0.1f, 0.1f, 5).share, 1);
+    }
+  EXPECT_NEAR(Filter().within(0, 0, 0.3f).share, 1 - std::pow(1 - 4 * 0.09, 1.5), 1e-5);
+  EXPECT_NEAR(Filter(box).within(0, 0, 0.6f).share, 0.9509111307851082, 1e-5);
+  EXPECT_NEAR(Filter(disc).within(0, 0, 0.5f).share, 0.25, 1e-5);
+}
+
 TEST(Filter, SharesAndMomentsAreThoseOfItsSamples) {
   constexpr std::uint32_t count = 1 << 14;
   for (const FilterKind kind : kinds)

@@ -55,6 +55,22 @@ TEST(Formulations, OfOneHalfPlaneAreTheSameEdge) {
       }
 }
 
+// The slope of a power is 0 at its edge: f / |f'| is a third of the distance of a cube.
+TEST(Formulations, APowerOfADistanceIsTheSameEdge) {
+  for (const char* program :
+       {"c = _q ^ 3 > 0 ? 1 : 0\n", "c = _q ^ 5 > 0 ? 1 : 0\n"})
+    for (const double degrees : {0.01, 45.0, 77.0, 133.0}) {
+      const Picture picture = draw(line(degrees, 8.13, 8.13) + program);
+      const double angle = degrees * std::numbers::pi / 180;
+      for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) {
+          const double d = (x + 0.5 - 8.13) * std::cos(angle) + (y + 0.5 - 8.13) * std::sin(angle);
+          EXPECT_NEAR(picture.at(x, y), Filter().share(static_cast<float>(d), 1, 0), 1.05 * one_step)
+              << program << degrees << ": " << x << ' ' << y;
+        }
+    }
+}
+
 // A line of a third of a pixel is broken nowhere, where it passes between samples for many rows too:
 // the exact response is the difference of those of its edges. Samples tell it, 32 of them.
 TEST(Formulations, ThinLinesAreWhole) {

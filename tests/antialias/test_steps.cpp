@@ -73,6 +73,7 @@ TEST_F(StepsOfAntialiasing, SearchForTheSamePixels) {
     for (const int reach : {1, 2})
       for (const bool has_ends : {false, true}) {
         Tile tile;
+        std::vector<float> bent;
         tile.rect = {0, 0, width, 9};
         tile.area = {-reach, -reach, width + reach, 9 + reach};
         tile.outputs = 2;
@@ -90,6 +91,10 @@ TEST_F(StepsOfAntialiasing, SearchForTheSamePixels) {
         for (auto& plane : planes) pointers.push_back(plane.data());
         tile.planes = pointers;
         if (has_ends) tile.ids = ids.data();
+        if (width % 2 == 1) {
+          for (std::size_t i = 0; i < samples + 64; ++i) bent.push_back(number(0, 1) < 0.9f ? 0 : 1);
+          tile.bent = bent.data();
+        }
         std::vector<std::vector<Pixel>> found;
         for (const Steps* steps : runnable()) found.push_back(found_by(*steps, tile, reach));
         EXPECT_GT(found[0].size(), 0u);
@@ -98,7 +103,8 @@ TEST_F(StepsOfAntialiasing, SearchForTheSamePixels) {
           for (std::size_t i = 0; i < pixels.size(); ++i) {
             const Pixel &a = pixels[i], &b = found[0][i];
             EXPECT_TRUE(a.x == b.x && a.y == b.y && a.silhouette == b.silhouette &&
-                        a.narrow == b.narrow && a.untold == b.untold && a.jumps == b.jumps);
+                        a.narrow == b.narrow && a.hidden == b.hidden && a.untold == b.untold &&
+                        a.unseen == b.unseen && a.enclosed == b.enclosed && a.jumps == b.jumps);
           }
         }
       }

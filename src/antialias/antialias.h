@@ -14,7 +14,7 @@
 //   steps      what is done for many pixels at once, compiled for each kind of processor
 //              (neighbours, fine_steps, smooth_steps, crossing_steps, sample_steps)
 //   smooth     the mean of what bends between edges, from neighbouring samples; of outputs that
-//              bend (bent)
+//              bend (courses)
 //   places     running a program anywhere (stream/sample_source.h)
 //   stored     where samples are known at pixels only: conditions laid open (force), their values
 //              fitted to neighbours (fit)

@@ -3,7 +3,7 @@
 
 #include <future>
 
-#include "antialias/bent.h"
+#include "antialias/courses.h"
 #include "antialias/derive.h"
 #include "antialias/filter.h"
 #include "stream/program.h"

@@ -1,5 +1,5 @@
 // A walk through the main function with what is known of each value; loops until nothing changes.
-#include "antialias/bent.h"
+#include "antialias/courses.h"
 
 #include <algorithm>
 

@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <mutex>
 #include <stdexcept>
 
 #include "antialias/fine.h"
 #include "antialias/path.h"
+#include "antialias/smooth.h"
+#include "antialias/steps.h"
 #include "antialias/stored.h"
 #include "stream/blocks.h"
 #include "stream/planes.h"
@@ -76,11 +79,13 @@ class Execution {
     const bool anywhere = quiet.samples->anywhere();
     const bool wanted = antialias_.mode == Mode::procedural && programs_.has_paths;
     stored_ = wanted && host_.stored && programs_.conditions.valid();
-    procedural_ = wanted && (anywhere || stored_);
+    procedural_ = wanted && (stored_ || (anywhere && !host_.stored));
     supersample_ = antialias_.mode == Mode::supersample;
     const std::size_t fine = procedural_ && anywhere ? find_fine(*quiet.runner) : nowhere;
     if (fine == nowhere && programs_.has_only_noise) procedural_ = false;
-    apron_ = procedural_ ? apron_of(antialias_.filter) : 0;
+    smooths_ = smooths(anywhere);
+    if (smooths_) smoothing_ = smoothing_of(antialias_.filter);
+    apron_ = procedural_ ? apron_of(antialias_.filter) : smooths_ ? 1 : 0;
 
     std::optional<Refiner> all;
     if (supersample_) all.emplace(*quiet.runner, nullptr, antialias_, programs_.outputs);
@@ -117,12 +122,14 @@ class Execution {
       if (bent_ != nowhere && !stored_) tile.bent = outputs[bent_];
       if (id != inputs_of.end())
         tile.ids = inputs[static_cast<std::size_t>(id - inputs_of.begin())];
-      if (!supersample_ && !procedural_) return;
+      if (!supersample_ && apron_ == 0) return;
       const Borrowed work(*this);
       if (supersample_) return put(tile, all->supersample(pixels_of(tile.rect), *work, status));
       Counts counts;
       std::optional<Refined> refined;
-      if (stored_) {
+      if (!procedural_) {
+        refined.emplace(std::vector<Pixel>(), programs_.outputs);
+      } else if (stored_) {
         if (const StoredRefiner* refiner = conditions())
           refined = refiner->refine(tile, inputs, status, counts);
       } else if (const Refiner* refiner = edges()) {
@@ -238,21 +245,47 @@ class Execution {
     return pixels;
   }
 
-  static void put(const Tile& tile, const Refined& refined) {
-    for (std::size_t o = 0; o < tile.outputs; ++o)
-      for (std::size_t i = 0; i < refined.pixels.size(); ++i)
-        tile.planes[o][tile.at(refined.pixels[i].x, refined.pixels[i].y)] = refined.values[o][i];
+  // Into a tile that is smooth already.
+  void put(const Tile& tile, const Refined& refined) const {
+    for (std::size_t o = 0; o < tile.outputs; ++o) {
+      const std::size_t last = is_smooth(o) ? std::min(refined.first_mean, refined.pixels.size())
+                                            : refined.pixels.size();
+      const auto at = [&](std::size_t i) -> float& {
+        return tile.planes[o][tile.at(refined.pixels[i].x, refined.pixels[i].y)];
+      };
+      for (std::size_t i = 0; i < last; ++i) at(i) = refined.values[o][i];
+      const auto all = static_cast<float>(refined.samples + 1);
+      for (std::size_t i = last; i < refined.pixels.size(); ++i) {
+        const float mean = refined.values[o][i], apart = at(i) - mean;
+        at(i) = std::isfinite(apart) ? mean + apart / all : mean;
+      }
+    }
+  }
+  bool is_smooth(std::size_t output) const {
+    return smooths_ && programs_.courses[output] == Course::bent;
   }
 
-  // Moves the tile's rows together.
+  // Whether some output is to be smoothed. Stored pixels are left as they are.
+  bool smooths(bool anywhere) const {
+    return antialias_.mode == Mode::procedural && antialias_.smooth && anywhere && !host_.stored &&
+           std::ranges::find(programs_.courses, Course::bent) != programs_.courses.end();
+  }
+
+  // Moves the tile's rows together, smooth where that is wanted.
   void cut_apron(const Tile& tile) const {
+    std::vector<float*> bent;
     for (std::size_t o = 0; o < programs_.outputs; ++o) {
       float* to = tile.planes[o];
+      if (is_smooth(o)) {
+        bent.push_back(to);
+        continue;
+      }
       for (int y = tile.rect.y0; y < tile.rect.y1; ++y, to += tile.rect.width()) {
         const float* from = tile.planes[o] + tile.at(tile.rect.x0, y);
         std::copy(from, from + tile.rect.width(), to);
       }
     }
+    if (!bent.empty()) steps().smooth(tile, smoothing_, bent);
   }
 
   // A thread's memory for one tile; it goes back to the others then.
@@ -293,7 +326,8 @@ class Execution {
   std::size_t paths_end_;  // outputs before this are the program's own, their path and ends
   std::size_t fine_ = nowhere, bent_ = nowhere;  // outputs of path.h, if there are any
   int apron_ = 0;
-  bool procedural_ = false, supersample_ = false, stored_ = false;
+  bool procedural_ = false, supersample_ = false, stored_ = false, smooths_ = false;
+  Smoothing smoothing_;
   const Placed* quiet_ = nullptr;
   std::once_flag once_;
   std::optional<Placed> edge_program_;

@@ -14,7 +14,9 @@
 //   refine     one edge: both sides and the kernel's share (filter); edges that bend within
 //              the kernel (circles, filter_circle); more: supersample (spread)
 //   steps      what is done for many pixels at once, compiled for each kind of processor
-//              (neighbours, fine_steps, crossing_steps, sample_steps)
+//              (neighbours, fine_steps, smooth_steps, crossing_steps, sample_steps)
+//   smooth     the mean of what bends between edges, from neighbouring samples; of outputs that
+//              bend (courses)
 //   places     running a program anywhere (stream/sample_source.h)
 //   stored     where samples are known at pixels only: conditions laid open (force), their values
 //              fitted to neighbours (fit)
@@ -42,6 +44,7 @@ struct Host {
 // As pse::execute() of programs.shown, whose state the host makes; `source` fills the tiles of
 // `options.window` and, where samples are known anywhere, up to 2 pixels around it. The sink gets
 // the planes of the program's own outputs, then up to four without meaning where there are paths.
+// Programs without paths are smoothed too.
 // The result does not depend on tile size, threads or vector width.
 RunResult execute(const Programs& programs, const Host& host, const Options& antialias,
                   const TileSource& source, const TileSink& sink, const ExecuteOptions& options,

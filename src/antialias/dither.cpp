@@ -36,9 +36,10 @@ std::vector<bool> differing(ir::Module& module) {
 // Marks the chances: instructions whose results are what dither is made of.
 class Chances {
  public:
-  Chances(const ir::Module& module, const std::vector<bool>& of_pixels)
+  Chances(const ir::Module& module, const std::vector<bool>& of_pixels, bool hashes)
       : module_(module),
         of_pixels_(of_pixels),
+        hashes_(hashes),
         change_(of_pixels.size(), unknown),
         constant_(of_pixels.size(), unknown),
         whole_of_(of_pixels.size(), ir::no_value) {}
@@ -63,11 +64,14 @@ class Chances {
  private:
   bool is_chance(const Instruction& in) const {
     if (in.operands.empty() || !of_pixels_[in.operands[0]]) return false;
-    if (in.op == Op::f2bits) return true;
-    // What is left of a number without its whole part.
-    if (in.op == Op::fsub && whole_of_[in.operands[1]] == in.operands[0]) return true;
     const Cut cut = cut_of(in.op);
-    return (cut == Cut::whole || cut == Cut::half) && change_[in.operands[0]] >= every_pixel;
+    const bool is_step = cut == Cut::whole || cut == Cut::half;
+    const float change = change_[in.operands[0]];
+    if (!hashes_) return is_step && change == every_pixel;
+    // A hash, or what is left of a number without its whole part.
+    return in.op == Op::f2bits ||
+           (in.op == Op::fsub && whole_of_[in.operands[1]] == in.operands[0]) ||
+           (is_step && change >= every_pixel);
   }
 
   // At most how much a result changes from pixel to pixel, steps aside.
@@ -108,13 +112,14 @@ class Chances {
 
   const ir::Module& module_;
   const std::vector<bool>& of_pixels_;
+  const bool hashes_;
   std::vector<float> change_, constant_;
   std::vector<Value> whole_of_;  // of a chance: what it is the whole part of
 };
 
 }  // namespace
 
-std::vector<bool> find_dither(const ir::Module& module) {
+std::vector<bool> find_dither(const ir::Module& module, bool hashes) {
   ir::Module of_pixels = module;
   if (std::ranges::none_of(module.inputs, is_pixel))
     return std::vector<bool>(module.main().values.size());
@@ -126,7 +131,7 @@ std::vector<bool> find_dither(const ir::Module& module) {
   for (ir::Input& input : of_chance.inputs) input.rate = ir::Rate::frame;
   of_chance.inputs.push_back({"$chance", ir::Rate::sample});
   const auto chance = static_cast<std::int32_t>(module.inputs.size());
-  if (!Chances(module, differs).find(of_chance.main().body, chance))
+  if (!Chances(module, differs, hashes).find(of_chance.main().body, chance))
     return std::vector<bool>(module.main().values.size());
   // What is gone with the chances' operands was wanted for them alone.
   passes::remove_dead(of_chance);

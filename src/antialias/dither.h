@@ -10,8 +10,9 @@
 namespace pse::antialias {
 
 // By value of the main function: whether it depends on a hash of px and py, or on whole numbers
-// that change at least once from pixel to pixel because of these. `module` is as it comes from the
+// that change at least once from pixel to pixel because of these; without `hashes` on whole
+// numbers of pixels alone, which are the same all over a pixel. `module` is as it comes from the
 // lowering.
-std::vector<bool> find_dither(const ir::Module& module);
+std::vector<bool> find_dither(const ir::Module& module, bool hashes = true);
 
 }  // namespace pse::antialias

@@ -131,6 +131,28 @@ float Filter::variance() const {
   return of_unit() * scale_ * scale_;
 }
 
+Filter::FourthMoments Filter::fourth_moments() const {
+  const auto of_unit = [&]() -> float {
+    switch (kind_) {
+      case FilterKind::cubic:
+        return 3.0f / 560;
+      case FilterKind::box:
+        return 1.0f / 80;
+      case FilterKind::disc:
+        return 1.0f / 8;
+      case FilterKind::cone:
+        return 3.0f / 56;
+      case FilterKind::paraboloid:
+        return 1.0f / 16;
+      default:
+        return 3 * deviation * deviation * deviation * deviation;
+    }
+  };
+  const float along = of_unit() * scale_ * scale_ * scale_ * scale_;
+  // Of round kernels it is a third; the square's axes know nothing of each other.
+  return {along, kind_ == FilterKind::box ? variance() * variance() : along / 3};
+}
+
 float Filter::share(float distance, float nx, float ny) const {
   const float reach_here = reach(nx, ny), d = distance / scale_;
   if (distance <= -reach_here) return 0;

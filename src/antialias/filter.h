@@ -36,6 +36,13 @@ class Filter {
   // Of a place under the kernel, along any direction; in pixels squared.
   float variance() const;
 
+  // The mean fourth power of a place's distance from the centre along either axis, and the mean
+  // product of the squares along both; in pixels to the fourth.
+  struct FourthMoments {
+    float along, across;
+  };
+  FourthMoments fourth_moments() const;
+
   // The share on the side of a straight edge that the normal (nx, ny) points to, where the centre
   // is d pixels on that side; 0 to 1, exact. Of the chapter's kernel 0 for d < -1/2, 1 for d > 1/2,
   // else 3 (d + 1/2)^2 - 2 (d + 1/2)^3.

@@ -52,6 +52,7 @@ std::expected<Programs, std::string> compile_programs(CompiledFront front,
   copy.calls.clear();
   passes::remove_dead(copy.module);
   const Decisions decisions = find_decisions(copy.module, changes);
+  programs.courses = find_courses(copy.module, decisions);
   if (!decisions.any && !decisions.any_noise) return finish(std::move(front));
   programs.has_paths = true;
   if (!decisions.any) {

@@ -3,6 +3,7 @@
 
 #include <future>
 
+#include "antialias/courses.h"
 #include "antialias/derive.h"
 #include "antialias/filter.h"
 #include "stream/program.h"
@@ -20,6 +21,7 @@ struct Options {
   // Of a pixel that is supersampled; within objects the procedural mode takes half as many.
   int samples = 64;
   Filter filter = Filter();
+  bool smooth = true;  // in the procedural mode: what bends between edges too (smooth.h)
 };
 
 struct Programs {
@@ -28,6 +30,7 @@ struct Programs {
   // The same without checks: for samples at places that the user has not asked for.
   std::shared_ptr<const Program> quiet;
   std::size_t outputs = 0;
+  std::vector<Course> courses;  // of these outputs; none: nothing is smoothed
   // Its edges (antialias/derive.h), compiled meanwhile; not valid where the program has no jumps:
   // paths then tell objects apart, or where noise is fine.
   using Result = std::expected<std::shared_ptr<const Program>, std::string>;

@@ -28,6 +28,10 @@ struct Counts {
 struct Refined {
   std::vector<Pixel> pixels;
   std::vector<std::vector<float>> values;
+  // The pixels from here on are means of so many samples within noise: what their neighbours make
+  // of them (smooth.h) counts as one more.
+  std::size_t first_mean = static_cast<std::size_t>(-1);
+  std::uint32_t samples = 0;
   Refined(std::vector<Pixel> list, std::size_t outputs) : pixels(std::move(list)), values(outputs) {
     resize(pixels.size());
   }

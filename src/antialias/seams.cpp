@@ -26,9 +26,11 @@ class Seams {
       const Instruction written = out.back();
       const Emit emit(module_.main(), out);
       if (is_call_of(written, "atan2")) {
-        // Above 0 wherever it is continuous.
+        // Above 0 wherever it is continuous, and below as soon as the angle is: at -0 too.
         const Value is_behind = emit.less(written.operands[1], emit.number(0));
-        see(emit, emit.choose(is_behind, written.operands[0], emit.number(1)));
+        const Value is_below = emit.less(written.result(), emit.number(0));
+        const Value at = emit.choose(is_below, emit.number(-1e-37f), emit.number(0));
+        see(emit, emit.choose(is_behind, emit.add(written.operands[0], at), emit.number(1)));
       } else if (written.op == Op::fdiv) {
         if (const auto by = size_of_.find(written.operands[1]); by != size_of_.end())
           see(emit, by->second);

@@ -1,9 +1,10 @@
 // What is done for many pixels at once: the same results, for different instructions. The bodies
-// are in neighbours.h, fine_steps.h, crossing_steps.h and sample_steps.h, and steps_any.cpp and its
-// like compile them.
+// are in neighbours.h, fine_steps.h, smooth_steps.h, crossing_steps.h and sample_steps.h, and
+// steps_any.cpp and its like compile them.
 #pragma once
 
 #include "antialias/crossings.h"
+#include "antialias/smooth.h"
 #include "antialias/tile.h"
 
 namespace pse::antialias {
@@ -31,6 +32,8 @@ struct Steps {
   std::array<Search, 2> search;
   // Likewise the pixels that find_fine_pixels() wants; tile.fine is not null.
   std::size_t (*find_fine)(const Tile& tile, Pixel* found);
+  // Smooths some of the tile's planes, and moves their rows together as if the area were the rect.
+  void (*smooth)(const Tile& tile, const Smoothing& by, std::span<float* const> planes);
 
   // Of the crossings' pixels, where the edges are `lines` (edge_outputs lists, derive.h): is an
   // edge within `farthest`, are two within `reach` of the kernel, do they explain every jump?

@@ -83,7 +83,9 @@ Refined Refiner::supersample(std::vector<Pixel> pixels, Work& work, RunStatus& s
 
 void Refiner::settle_noise(Refined& result, Counts& counts, Work& work, RunStatus& status) const {
   counts.supersampled += static_cast<std::int64_t>(work.noisy.size());
-  add_means(work.noisy, std::min(noise_look, count()), result, work, status);
+  result.first_mean = result.pixels.size();
+  result.samples = std::min(noise_look, count());
+  add_means(work.noisy, result.samples, result, work, status);
 }
 
 void Refiner::add_means(std::span<const Pixel> pixels, std::uint32_t count, Refined& result,

@@ -23,8 +23,8 @@ struct Tile {
     return static_cast<std::size_t>(y - area.y0) * static_cast<std::size_t>(area.width()) +
            static_cast<std::size_t>(x - area.x0);
   }
-  // Of path.h. Ends are null where no loop searches.
-  const float* path() const { return planes[outputs]; }
+  // Of path.h. Null where all go the same way; ends are null where no loop searches.
+  const float* path() const { return planes.size() > outputs ? planes[outputs] : nullptr; }
   const float* ends() const { return planes.size() > outputs + 1 ? planes[outputs + 1] : nullptr; }
 };
 
@@ -66,7 +66,7 @@ inline bool differ(float a, float b) {
 int apron_of(const Filter& filter);
 
 // The pixels of tile.rect where noise is finer than a pixel (fine.h) and some output deviates
-// visibly from its mean, as far as the neighbours that go the same way tell. In row-major order.
+// visibly from its mean by what its neighbours tell nothing of. In row-major order.
 // `found` is memory, used again.
 std::span<const Pixel> find_fine_pixels(const Tile& tile, std::vector<Pixel>& found);
 

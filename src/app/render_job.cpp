@@ -280,6 +280,8 @@ antialias::Options RenderJob::antialias() const {
   antialias::Options antialias = options_.antialias;
   if (antialias.mode == antialias::Mode::supersample && reads_stored())
     antialias.mode = antialias::Mode::none;
+  // Pixels in one row are the rows of a table, and no neighbours.
+  antialias.smooth = plane_.height > 1;
   return antialias;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <numbers>
 #include <set>
@@ -206,6 +207,19 @@ Surfaces::Joined Surfaces::join(const std::vector<std::shared_ptr<const Program>
   return joined;
 }
 
+// An output is what the least of the programs that set it says of it.
+std::vector<antialias::Course> Surfaces::courses_of(const antialias::Programs& all) const {
+  const auto base = [](const std::string& name) { return name.substr(0, name.find('.')); };
+  std::vector<antialias::Course> courses(all.outputs, antialias::Course::even);
+  for (const SurfaceProgram& part : programs_)
+    for (std::size_t own = 0; own < part.programs.courses.size(); ++own)
+      for (std::size_t o = 0; o < all.outputs; ++o)
+        if (base(part.programs.shown->module().outputs[own].name) ==
+            base(all.shown->module().outputs[o].name))
+          courses[o] = std::max(courses[o], part.programs.courses[own]);
+  return courses;
+}
+
 antialias::Programs Surfaces::combine(std::vector<SurfaceProgram> programs, antialias::Mode mode) {
   programs_ = std::move(programs);
   using List = std::vector<std::shared_ptr<const Program>>;
@@ -241,6 +255,7 @@ antialias::Programs Surfaces::combine(std::vector<SurfaceProgram> programs, anti
                           surface::TraceCall::What::visible})
     calls_.push_back(std::make_unique<surface::TraceCall>(
         surface::TraceCall{what, joined_.front().shader.get()}));
+  all.courses = courses_of(all);
   if (quiet != shown) all.quiet = add(quiet, all.has_paths);
   const auto ready = [&](const List& list) {
     std::promise<antialias::Programs::Result> made;

@@ -93,6 +93,7 @@ class Surfaces {
     std::vector<std::size_t> parts;
   };
   Joined join(const std::vector<std::shared_ptr<const Program>>& of_parts, bool paths) const;
+  std::vector<antialias::Course> courses_of(const antialias::Programs& all) const;
   std::vector<FrameState> states(const Joined& joined, const ImagePlane& plane) const;
   std::vector<Joined> joined_;  // the first is what is shown
   std::shared_ptr<const surface::Scene> placed_;  // of the frame

@@ -79,10 +79,7 @@ TEST(Slopes, OnThePlaneThePixelIsThePictures) {
 
 TEST(Slopes, HowManyOctavesIsNoEdge) {
   const std::string text = "c = turbulence([x y 0] / (1.3 - y))\n";
-  const Picture none = render(text, {.antialias = plain()});
-  const Picture ours = render(text, {.antialias = procedural()});
-  EXPECT_EQ(ours.planes, none.planes);
-  EXPECT_EQ(ours.counts.filtered, 0);
+  EXPECT_EQ(render(text, {.antialias = procedural()}).counts.filtered, 0);
 }
 
 }  // namespace

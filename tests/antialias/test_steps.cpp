@@ -180,6 +180,55 @@ TEST_F(StepsOfAntialiasing, FindTheSameFinePixels) {
   }
 }
 
+// Against a loop over pixels and directions; planes that are not wanted stay as they are.
+TEST_F(StepsOfAntialiasing, SmoothToTheSameBits) {
+  const Smoothing by{0.0375f, -0.0078125f};
+  for (const int width : {1, 7, 16, 33, 64})
+    for (const int reach : {1, 2})
+      for (const bool has_ends : {false, true}) {
+        Tile tile{.rect = {3, 2, 3 + width, 11},
+                  .area = {3 - reach, 2 - reach, 3 + width + reach, 11 + reach},
+                  .outputs = 2};
+        const auto row = static_cast<std::ptrdiff_t>(tile.area.width());
+        const auto samples = static_cast<std::size_t>(row * tile.area.height());
+        std::vector<std::vector<float>> planes(has_ends ? 4 : 3, std::vector<float>(samples + 64));
+        for (std::size_t i = 0; i < samples; ++i) {
+          planes[0][i] = any_number(), planes[1][i] = number(0, 1);
+          planes[2][i] = number(0, 1) < 0.8f ? 3 : 4;
+          if (has_ends) planes[3][i] = number(0, 1) < 0.8f ? 1 : number(0, 2);
+        }
+        std::vector<float> expected;
+        for (int y = tile.rect.y0; y < tile.rect.y1; ++y)
+          for (int x = tile.rect.x0; x < tile.rect.x1; ++x) {
+            const auto at = static_cast<std::ptrdiff_t>(tile.at(x, y));
+            const auto value = [&](std::size_t plane, std::ptrdiff_t step) {
+              return planes[plane][static_cast<std::size_t>(at + step)];
+            };
+            const auto bend = [&](std::ptrdiff_t step) {
+              for (const std::ptrdiff_t there : {step, -step})
+                if (value(2, there) != value(2, 0) ||
+                    (has_ends && !(std::abs(value(3, there) - value(3, 0)) <= 0.05f)))
+                  return 0.0f;
+              return value(0, step) + value(0, -step) - 2 * value(0, 0);
+            };
+            const float more =
+                by.axis * (bend(1) + bend(row)) + by.diagonal * (bend(row - 1) + bend(row + 1));
+            expected.push_back(std::abs(more) < 3e38f ? value(0, 0) + more : value(0, 0));
+          }
+        for (const Steps* steps : runnable()) {
+          auto copies = planes;
+          std::vector<float*> pointers;
+          for (auto& plane : copies) pointers.push_back(plane.data());
+          tile.planes = pointers;
+          steps->smooth(tile, by, std::span(pointers).first(1));
+          EXPECT_EQ(bits_of(copies[0].data(), expected.size()),
+                    bits_of(expected.data(), expected.size()))
+              << width << ' ' << reach << ' ' << has_ends;
+          EXPECT_EQ(copies[1], planes[1]);
+        }
+      }
+}
+
 TEST_F(StepsOfAntialiasing, FollowEdgesToTheSameBits) {
   constexpr std::size_t count = 53;
   constexpr float reach = 0.5f;

@@ -105,7 +105,7 @@ Exit PrepassStage::run(Session& session, RenderOptions& options, const ProgramFi
                       "put %04d into the name where the frame's number should stand");
   RunStatus status;
   const SignalWatch watch(signals, status);
-  PrepassReport total;
+  PrepassReport total{.step = options.prepass};
   bool proven = true;
   double possible = 0;
   for (const int frame : frames) {
@@ -130,15 +130,20 @@ Exit PrepassStage::run(Session& session, RenderOptions& options, const ProgramFi
                                        : "the prepass stopped");
     }
     write_spans(*spans, size.width, size.height, *image::frame_name(pattern, frame));
-    total.probes += found.probes, total.missed += found.missed;
+    total.missed += found.missed;
+    if (found.missed > 0) total.step = std::min(total.step, found.step);
     total.evaluations += found.evaluations, total.boxes += found.boxes;
     proven = proven && found.proven, possible = std::max(possible, found.possible);
   }
   if (total.missed > 0)
-    session.console.warning("prepass", fmt::format(
-        "the prepass did not see matter at {} of {} probes: it is thinner than {} pixels or steps. "
-        "It was followed from there; a smaller --prepass sees more",
-        total.missed, total.probes, options.prepass));
+    session.console.warning(
+        "prepass",
+        fmt::format(
+            "the prepass did not see all matter at first: some is thinner than {} pixels or "
+            "steps. {}, which takes longer",
+            options.prepass,
+            total.step > 1 ? fmt::format("It looked again in steps of {}", total.step)
+                           : "All that may hold matter is marched through"));
   if (counts)
     session.console.note(fmt::format("prepass: {:.0f} density evaluations", total.evaluations));
   if (options.count_evaluations && bounded)

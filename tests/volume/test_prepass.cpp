@@ -169,6 +169,7 @@ TEST_F(Prepass, ProvesWhatIsLeftBesideABody) {
 // What lies between samples, by its nature: thin, small, sharp, at the border, or moving.
 struct Opponent {
   const char *name, *text;
+  const char* res = "96x96";
 };
 class PrepassAgainst : public Prepass, public ::testing::WithParamInterface<Opponent> {};
 
@@ -177,8 +178,8 @@ TEST_P(PrepassAgainst, GivesTheSamePicture) {
                     "color = hypertexture(density, init_density = moment, step = 0.02,\n"
                     "    shadows = 0, crevices = 0)\n"
                     "function moment(origin, dir, chance)\n    return chance\n");
-  const image::Image whole = render({"--res", "96x96"});
-  EXPECT_EQ(whole.planes, render({"--res", "96x96", "--prepass", "4"}).planes) << ended.err;
+  const image::Image whole = render({"--res", GetParam().res});
+  EXPECT_EQ(whole.planes, render({"--res", GetParam().res, "--prepass", "4"}).planes) << ended.err;
 }
 
 constexpr Opponent opponents[] = {
@@ -197,6 +198,8 @@ constexpr Opponent opponents[] = {
     {"SheetsAtTheBordersOfTheBox",
      "function density(p)\n    sheet = abs(p.z - 1.44) < 0.005 and p.x < 0\n"
      "    return p.y < -1.42 or p.x > 1.43 or sheet ? 1 : 0\n"},
+    {"SharpNoise",
+     "function density(p)\n    return Noise(9 * p) > 0.45 and norm(p) < 1.2 ? 1 : 0\n", "128x128"},
     {"Below0Outside",
      "function density(p)\n    d = 30 * (0.02 - abs(norm(p) - 0.8))\n"
      "    return d - (p.x > 0.2 ? 100 : 0)\n"},

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <stdlib.h>
 
+#include <algorithm>
+
 #include "app/compile_settings.h"
 #include "app/function_program.h"
 #include "app/prepass_proof.h"
@@ -28,6 +30,10 @@ std::shared_ptr<const Program> compile_bounds(ProgramFile& program, const LowerH
   Diagnostics ignored;
   auto front = compile_front(program.sources, program.file, host, options, ignored);
   if (!front) return nullptr;
+  // A span of the program's own making tells no density.
+  if (std::none_of(front->module.inputs.begin(), front->module.inputs.end(),
+                   [](const ir::Input& input) { return input.name == "prepass.step"; }))
+    return nullptr;
   front->calls.clear();
   bounds::bound_outputs(front->module, {.known = {{"prepass.step", -1.0f}}});
   front->program.outputs.clear();

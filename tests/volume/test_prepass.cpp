@@ -144,6 +144,16 @@ TEST_F(Prepass, WhatMovesIsLookedForAllThroughTheShutter) {
   EXPECT_EQ(missing, 0);
 }
 
+TEST_F(Prepass, ASpanOfTheProgramsOwnMakingIsNoDensity) {
+  file("a.pse",
+       "function density(p)\n    return soft_sphere(p, 0.5, 0.1)\n"
+       "function light(p, d)\n    return white * p.z\n"
+       "origin = [x y 2]\nspan = sphere_span(origin, [0 0 -1], 0.7)\n"
+       "color = raymarch(density, light, origin, [0 0 -1], span.x, span.y, 0.02, 20)\n");
+  const image::Image whole = render({}), fast = render({"--prepass", "4"});
+  EXPECT_EQ(whole.planes, fast.planes);
+}
+
 TEST_F(Prepass, TellsOfSpecksThatItDidNotSeeAtFirst) {
   // Motes of a third of a pixel's size, far apart: no search sees them all, so all is marched.
   program("    return length(fract(16 * p) - 0.5) < 0.12 ? 0.9 : 0\n");

@@ -40,8 +40,16 @@ void write_grids(volume::GridWriter& writer, const std::string& name,
   auto file = image::OutputFile::create(name);
   if (!file) throw Failure(Exit::output, file.error().message);
   if (const auto written = writer.write(file->path_for_others(), attributes, identity_of(recipe));
-      !written)
+      !written) {
+    // Whether there was room is asked of the disk: OpenVDB's errors do not say it.
+    std::error_code unknown;
+    const auto space = std::filesystem::space(file->path_for_others(), unknown);
+    if (!unknown && space.available < (std::uintmax_t{1} << 20))
+      throw Failure(Exit::output,
+                    fmt::format("no room to write {}; what was there before is unchanged", name),
+                    "lower --res, or write to another disk");
     throw Failure(Exit::output, fmt::format("cannot write {}: {}", name, written.error().message));
+  }
   if (const auto done = file->commit(); !done) throw Failure(Exit::output, done.error().message);
 }
 
@@ -168,10 +176,14 @@ Exit BakeJob::run_frame(int index, int frame) {
       volume::bake(*program_, state, lattice_, grids_, *writer, bake, status_);
   if (result.end == RunEnd::failed) return report_failure(result), Exit::running;
   if (result.out_of_memory)
-    throw Failure(Exit::running,
-                  fmt::format("the volume takes more than {}; nothing was written",
-                              human_bytes(double(options_.memory_limit))),
-                  "lower --res, or raise --memory");
+    throw Failure(
+        Exit::running,
+        fmt::format("the volume {} more than {}; nothing was written",
+                    result.estimate > 0 ? fmt::format("would take about {} of memory,",
+                                                      human_bytes(result.estimate))
+                                        : "takes",
+                    human_bytes(double(options_.memory_limit))),
+        "lower --res, or raise --memory");
   if (result.not_finite > 0 && bake.stop_at_not_finite) {
     report_result(result, name);
     throw Failure(Exit::strict, fmt::format("{} was not written", name));

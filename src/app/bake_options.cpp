@@ -2,6 +2,9 @@
 #include "app/bake_options.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
 
 #include "surface/shape_words.h"
 
@@ -60,7 +63,11 @@ VolumeOptions bake_options(const Session& session) {
   if (const auto value = arguments.value("band"))
     options.band = static_cast<float>(parse_number(*value, 1, 1000));
   options.fit = arguments.has("fit");
+  // Half of what the machine has.
+  const auto machine = static_cast<std::size_t>(std::max(::sysconf(_SC_PHYS_PAGES), 0L)) *
+                       static_cast<std::size_t>(std::max(::sysconf(_SC_PAGESIZE), 0L));
   options.memory_limit = std::size_t{8192} << 20;
+  if (machine > 0) options.memory_limit = std::min(options.memory_limit, machine / 2);
   if (const auto value = arguments.value("memory"))
     options.memory_limit = static_cast<std::size_t>(parse_integer(*value, 1, 1 << 24)) << 20;
 

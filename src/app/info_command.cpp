@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
-#include <nlohmann/json.hpp>
 
 #include "app/knobs.h"
 #include "app/program_file.h"
@@ -103,8 +103,7 @@ Json program_json(const ProgramInfo& info) {
              {{"constant", info.operations.written[0]},
               {"frame", info.operations.written[1]},
               {"sample", info.operations.written[2]}}},
-            {"compiled",
-             {{"frame", info.operations.frame}, {"sample", info.operations.sample}}}}}};
+            {"compiled", {{"frame", info.operations.frame}, {"sample", info.operations.sample}}}}}};
 }
 
 image::ImageSpec examine_image(const std::string& file) {
@@ -148,6 +147,8 @@ struct GridFacts {
   volume::GridInfo head;
   double voxel = 0;
   std::optional<std::pair<float, float>> range;  // the background is one of the values
+  bool has_nan = false;
+  std::string unread;  // why its voxels cannot be read
 };
 
 template <class Value>
@@ -163,12 +164,21 @@ std::vector<GridFacts> examine_volume(const std::string& file) {
   for (const volume::GridInfo& head : taken(vdb->info(file)).grids) {
     GridFacts facts{.head = head};
     if (head.components > 0) {
-      const volume::GridData data = taken(vdb->read(file, head.name, limit));
+      const auto read = vdb->read(file, head.name, limit);
+      // What is sound and of another kind is only told.
+      if (!read && read.error().kind != volume::ErrorKind::damaged) {
+        facts.unread = read.error().message;
+        all.push_back(std::move(facts));
+        continue;
+      }
+      const volume::GridData data = taken(read);
       facts.voxel = 1 / std::hypot(data.to_index[0], data.to_index[1], data.to_index[2]);
       std::pair<float, float> range{INFINITY, -INFINITY};
       for (const auto* values : {&data.voxels, &data.even})
-        for (const float value : *values)
+        for (const float value : *values) {
           range = {std::fmin(range.first, value), std::fmax(range.second, value)};
+          facts.has_nan = facts.has_nan || std::isnan(value);
+        }
       if (range.first <= range.second) facts.range = range;
     }
     all.push_back(std::move(facts));
@@ -183,23 +193,32 @@ const char* class_of(const volume::GridInfo& grid) {
 
 std::string volume_text(const std::string& name, const std::vector<GridFacts>& grids) {
   std::string out = fmt::format("{}: volume\n", name);
-  for (const auto& [head, voxel, range] : grids) {
-    out += fmt::format("  {}: {}, {}\n", head.name, head.type, class_of(head));
-    out += fmt::format("    voxels  {} with values, [{}] to [{}]\n", head.active,
-                       fmt::join(head.low, " "), fmt::join(head.high, " "));
+  if (grids.empty()) out += "  no grid\n";
+  for (const auto& [head, voxel, range, has_nan, unread] : grids) {
+    out += fmt::format("  {}: {}, {}\n", volume::shown_name(head.name), head.type, class_of(head));
+    if (head.low[0] > head.high[0])
+      out += "    voxels  none with values\n";
+    else
+      out += fmt::format("    voxels  {} with values, [{}] to [{}]\n", head.active,
+                         fmt::join(head.low, " "), fmt::join(head.high, " "));
     if (voxel > 0) out += fmt::format("    side    {:.6g} m\n", voxel);
-    if (range) out += fmt::format("    values  {:.6g} to {:.6g}\n", range->first, range->second);
+    if (range)
+      out += fmt::format("    values  {:.6g} to {:.6g}{}\n", range->first, range->second,
+                         has_nan ? ", and some that are NaN" : "");
+    if (!unread.empty()) out += fmt::format("    unread  {}\n", unread);
   }
   return out;
 }
 
 Json volume_json(const std::string& name, const std::vector<GridFacts>& grids) {
   Json json = {{"file", name}, {"kind", "volume"}, {"grids", Json::array()}};
-  for (const auto& [head, voxel, range] : grids) {
+  for (const auto& [head, voxel, range, has_nan, unread] : grids) {
     Json grid = {{"name", head.name},     {"type", head.type}, {"class", class_of(head)},
                  {"active", head.active}, {"low", head.low},   {"high", head.high}};
     if (voxel > 0) grid["voxel"] = voxel;
     if (range) grid["range"] = {range->first, range->second};
+    if (has_nan) grid["nan"] = true;
+    if (!unread.empty()) grid["unread"] = unread;
     json["grids"].push_back(std::move(grid));
   }
   return json;

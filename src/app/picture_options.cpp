@@ -250,7 +250,7 @@ std::vector<OptionSpec> bake_options() {
       {"", "band", one, "N", "how far from the surface distances are kept, in voxels; default 3"},
       {"", "fit", nothing, "",
        "a mesh: move and scale it so that it is centred, its longest side 2"},
-      {"", "memory", one, "MIB", "stop where the grids take more memory; default 8192"},
+      {"", "memory", one, "MIB", "stop where the grids take more memory; default 8192, or half of what there is"},
       shared("seed"),
       shared("fps"),
       define,

@@ -1,8 +1,10 @@
-// Searching, widening, following and probing.
+// Searching, widening, following, probing; and again in smaller steps where that has missed
+// something.
 #include "app/prepass.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "app/prepass_proof.h"
 #include "app/surfaces.h"
@@ -13,7 +15,10 @@ namespace pse::app {
 namespace {
 
 constexpr float nowhere_near = 1e30f, nowhere_far = -1e30f;
-constexpr int probe_block = 24;  // one probe in a square of so many pixels
+constexpr int probe_block = 12;       // one probe in a square of so many pixels
+constexpr int quarters = 4;           // of a cell: one ray through each
+constexpr std::int64_t enough = 500;  // rays that meet matter, to judge by
+constexpr float margin = 2;           // what is found is widened by so many coarse steps
 // Where the part not proven empty is at most this, the picture marches through all of it.
 constexpr double little = 1.0 / 40;
 
@@ -36,59 +41,98 @@ class Prepass {
     checked_.assign(spans_.near.size(), false);
   }
 
-  std::optional<Spans> run(BoxBounds* bounds) {
-    std::optional<Possible> possible;
-    if (bounds != nullptr) {
-      const int finest = spans_.cell % 2 == 0 ? spans_.cell / 2 : spans_.cell;
-      possible = find_possible(*bounds, width_, height_, finest, std::int64_t{width_} * height_);
-      if (!possible) return std::nullopt;
-      report_.boxes += possible->boxes;
-      report_.possible = possible->part;
-      report_.proven = possible->part <= little;
-      if (report_.proven) return std::move(possible->spans);
+  // `possible`: all there is to look at, where that is known.
+  std::optional<Spans> run(const Spans* possible) {
+    if (!search(possible) || !follow()) return std::nullopt;
+    // Other rays and other steps, until enough of them have met matter and nothing that was missed.
+    if (!probe(possible)) return std::nullopt;
+    for (int k = 1; k < quarters && !is_too_coarse(); ++k) {
+      const std::int64_t before = missed_;
+      if (!search_elsewhere(possible, k) || !follow()) return std::nullopt;
+      settled_ = missed_ == before;
+      if (settled_ && met_ >= enough) break;
     }
-    if (!search_cells(possible ? &possible->spans : nullptr) || !follow()) return std::nullopt;
-    if (!probe() || !follow()) return std::nullopt;
-    return spans_;
+    return possible != nullptr ? within(*possible) : spans_;
   }
+  // How many rays met what had not been found before them.
+  std::int64_t missed() const { return missed_; }
+  // Whether the last rays met nothing else.
+  bool settled() const { return settled_ && !is_too_coarse(); }
 
  private:
-  // The middle rays of the cells, in coarse steps; cells twice as large say first where to look.
-  // Where it is known what may hold matter, two rays of every cell of that, which leave less room
-  // for a speck between them.
-  bool search_cells(const Spans* possible) {
-    if (possible != nullptr)
-      return search_cells_within(possible, 0.25, 0.25) && search_cells_within(possible, 0.75, 0.75);
-    if (spans_.cell < 4) return search_cells_within(nullptr);
-    Prepass large(search_, width_, height_, 2 * spans_.cell, report_);
-    return large.search_cells_within(nullptr) && search_cells_within(&large.spans_);
+  using Rays = std::vector<SpanSearch::Ray>;
+
+  // Where one ray in so many meets what was missed, there is more that no ray has met.
+  bool is_too_coarse() const { return enough * missed_ > met_; }
+
+  // A ray of each cell, in coarse steps. Each cell takes its neighbours' stretches too.
+  bool search(const Spans* possible) {
+    Rays rays = cell_rays(possible, 0);
+    if (!look(rays, spans_.cell)) return false;
+    for (const auto& ray : rays)
+      if (ray.near < ray.far) reach_ = std::min(reach_, ray.far - ray.near);
+    for (const auto& ray : rays)
+      if (ray.near < ray.far) spread(ray);
+    return true;
   }
 
-  // Each cell takes its neighbours' stretches too.
-  bool search_cells_within(const Spans* within, double middle_x = 0.5, double middle_y = 0.5) {
-    std::vector<SpanSearch::Ray> rays;
-    std::vector<std::pair<int, int>> cells;
+  // The same by other rays: what they meet outside of the stretches was missed.
+  bool search_elsewhere(const Spans* possible, int quarter) {
+    Rays rays = cell_rays(possible, quarter);
+    if (!look(rays, spans_.cell)) return false;
+    // Where matter begins is known to a step.
+    take_missed(rays, reach_);
+    return true;
+  }
+
+  // A ray of each cell, anywhere in a quarter of it, so that nothing lies between all rays.
+  Rays cell_rays(const Spans* within, int quarter) const {
+    Rays rays;
     const double n = spans_.cell;
+    const int salt = 3 + 2 * quarter;
+    // The first two lie across from each other.
+    const double left = quarter == 0 || quarter == 3 ? 0 : 0.5;
+    const double top = quarter == 0 || quarter == 2 ? 0 : 0.5;
     for (int y = 0; y < spans_.height; ++y)
       for (int x = 0; x < spans_.width; ++x) {
-        SpanSearch::Ray ray{std::min((x + middle_x) * n, width_ - 0.5),
-                            std::min((y + middle_y) * n, height_ - 0.5)};
+        const double right = left + scattered(x, y, salt, 64) / 128.0;
+        const double down = top + scattered(x, y, salt + 1, 64) / 128.0;
+        SpanSearch::Ray ray{std::min((x + right) * n, width_ - 0.5),
+                            std::min((y + down) * n, height_ - 0.5)};
         if (within != nullptr) {
           const auto [near, far] = stretch(*within, x, y);
           if (!(near <= far)) continue;
           ray.near = near, ray.far = far;
         }
         rays.push_back(ray);
-        cells.emplace_back(x, y);
       }
+    return rays;
+  }
+
+  bool look(Rays& rays, int step) {
     report_.searched += static_cast<std::int64_t>(rays.size());
-    if (!search_.look(rays, spans_.cell)) return false;
-    for (const auto& ray : rays)
-      if (ray.near < ray.far) reach_ = std::min(reach_, ray.far - ray.near);
-    for (std::size_t k = 0; k < rays.size(); ++k)
-      if (rays[k].near < rays[k].far)
-        spread(cells[k].first, cells[k].second, rays[k].near - reach_, rays[k].far + reach_);
-    return true;
+    return search_.look(rays, step);
+  }
+
+  std::pair<int, int> cell_of(const SpanSearch::Ray& ray) const {
+    return {static_cast<int>(ray.x) / spans_.cell, static_cast<int>(ray.y) / spans_.cell};
+  }
+
+  // Adds what rays have met by more than `slack` outside of the stretches.
+  void take_missed(const Rays& rays, float slack) {
+    for (const auto& ray : rays) {
+      if (!(ray.near < ray.far)) continue;
+      ++met_;
+      const auto [x, y] = cell_of(ray);
+      const std::size_t i = spans_.at(x, y);
+      if (!spans_.empty(i) && spans_.near[i] <= ray.near + slack &&
+          spans_.far[i] >= ray.far - slack)
+        continue;
+      ++missed_;
+      if (!std::isfinite(reach_)) reach_ = 0;
+      reach_ = std::max(reach_, ray.far - ray.near);
+      spread(ray);
+    }
   }
 
   // What other spans have within a cell.
@@ -106,8 +150,10 @@ class Prepass {
     return found;
   }
 
-  // Gives a stretch to a cell and its neighbours; those that change are to be checked.
-  void spread(int x, int y, float from, float to) {
+  // Gives a stretch to a ray's cell and its neighbours; those that change are to be checked.
+  void spread(const SpanSearch::Ray& ray) {
+    const auto [x, y] = cell_of(ray);
+    const float from = ray.near - margin * reach_, to = ray.far + margin * reach_;
     each_neighbour(x, y, [&](int nx, int ny) {
       const std::size_t i = spans_.at(nx, ny);
       if (spans_.widen(i, from, to)) checked_[i] = false;
@@ -130,40 +176,35 @@ class Prepass {
     if (spans_.empty(other)) return {near, far};
     const bool before = spans_.near[other] > spans_.near[i] + 2 * reach_;
     const bool behind = spans_.far[other] < spans_.far[i] - 2 * reach_;
-    return {before ? near : behind ? spans_.far[other] : nowhere_near,
-            behind ? far : before ? spans_.near[other] : nowhere_far};
+    return {before   ? near
+            : behind ? spans_.far[other]
+                     : nowhere_near,
+            behind   ? far
+            : before ? spans_.near[other]
+                     : nowhere_far};
   }
 
   // Where cells with matter border on cells without any, or without any as near or as far, looks at
   // the outermost pixels step by step: if there is matter, it may go on next door.
   bool follow() {
     for (;;) {
-      std::vector<SpanSearch::Ray> rays;
-      std::vector<std::pair<int, int>> cells;
+      Rays rays;
       for (int y = 0; y < spans_.height; ++y)
         for (int x = 0; x < spans_.width; ++x) {
           const std::size_t i = spans_.at(x, y);
           if (spans_.empty(i) || checked_[i]) continue;
           checked_[i] = true;
-          add_border(x, y, rays, cells);
+          add_border(x, y, rays);
         }
       if (rays.empty()) return true;
-      report_.searched += static_cast<std::int64_t>(rays.size());
-      if (!search_.look(rays, 1)) return false;
-      for (std::size_t k = 0; k < rays.size(); ++k) {
-        if (!(rays[k].near < rays[k].far)) continue;
-        const auto [x, y] = cells[k];
-        each_neighbour(x, y, [&](int nx, int ny) {
-          report_.grown += spans_.empty(spans_.at(nx, ny)) ? 1 : 0;
-        });
-        spread(x, y, rays[k].near - reach_, rays[k].far + reach_);
-      }
+      if (!look(rays, 1)) return false;
+      for (const auto& ray : rays)
+        if (ray.near < ray.far) spread(ray);
     }
   }
 
   // The pixels of a cell that touch cells which lack something, and where on their rays that is.
-  void add_border(int cx, int cy, std::vector<SpanSearch::Ray>& rays,
-                  std::vector<std::pair<int, int>>& cells) const {
+  void add_border(int cx, int cy, Rays& rays) const {
     const int n = spans_.cell;
     const int x0 = cx * n, y0 = cy * n;
     const int x1 = std::min(x0 + n, width_) - 1, y1 = std::min(y0 + n, height_) - 1;
@@ -179,33 +220,43 @@ class Prepass {
         }
         if (!(ray.near <= ray.far)) continue;
         rays.push_back(ray);
-        cells.emplace_back(cx, cy);
       }
   }
 
+  // What was found, as far as it is possible.
+  Spans within(const Spans& possible) const {
+    const int cell = std::gcd(spans_.cell, possible.cell);
+    Spans both = Spans::nowhere(width_, height_, cell);
+    for (int y = 0; y < both.height; ++y)
+      for (int x = 0; x < both.width; ++x) {
+        const auto there = [&](const Spans& spans) {
+          return spans.at(x * cell / spans.cell, y * cell / spans.cell);
+        };
+        const std::size_t i = both.at(x, y), a = there(spans_), b = there(possible);
+        both.near[i] = std::max(spans_.near[a], possible.near[b]);
+        both.far[i] = std::min(spans_.far[a], possible.far[b]);
+      }
+    return both;
+  }
+
   // Single pixels, all steps of their rays: what is found outside the stretches was missed.
-  bool probe() {
-    std::vector<SpanSearch::Ray> rays;
+  bool probe(const Spans* possible) {
+    Rays rays;
     for (int y0 = 0; y0 < height_; y0 += probe_block)
       for (int x0 = 0; x0 < width_; x0 += probe_block) {
         const int x = x0 + scattered(x0, y0, 1, probe_block),
                   y = y0 + scattered(x0, y0, 2, probe_block);
-        if (x < width_ && y < height_) rays.push_back({x + 0.5, y + 0.5});
+        if (x >= width_ || y >= height_) continue;
+        SpanSearch::Ray ray{x + 0.5, y + 0.5};
+        if (possible != nullptr) {
+          const std::size_t i = possible->at(x / possible->cell, y / possible->cell);
+          if (possible->empty(i)) continue;
+          ray.near = possible->near[i], ray.far = possible->far[i];
+        }
+        rays.push_back(ray);
       }
-    report_.searched += static_cast<std::int64_t>(rays.size());
-    report_.probes += static_cast<std::int64_t>(rays.size());
-    if (!search_.look(rays, 1)) return false;
-    for (const auto& ray : rays) {
-      if (!(ray.near < ray.far)) continue;
-      if (!std::isfinite(reach_)) reach_ = 0;
-      const int x = static_cast<int>(ray.x) / spans_.cell,
-                y = static_cast<int>(ray.y) / spans_.cell;
-      const std::size_t i = spans_.at(x, y);
-      if (spans_.near[i] <= ray.near && spans_.far[i] >= ray.far) continue;
-      ++report_.missed;
-      reach_ = std::max(reach_, ray.far - ray.near);
-      spread(x, y, ray.near - reach_, ray.far + reach_);
-    }
+    if (!look(rays, 1)) return false;
+    take_missed(rays, 0);
     return true;
   }
 
@@ -214,6 +265,8 @@ class Prepass {
   PrepassReport& report_;
   Spans spans_;
   std::vector<bool> checked_;
+  std::int64_t missed_ = 0, met_ = 0;
+  bool settled_ = false;
   float reach_ = std::numeric_limits<float>::infinity();  // a coarse step along the ray
 };
 
@@ -227,6 +280,12 @@ Spans Spans::nowhere(int width, int height, int cell) {
   const auto cells = std::size_t(spans.width) * std::size_t(spans.height);
   spans.near.assign(cells, nowhere_near);
   spans.far.assign(cells, nowhere_far);
+  return spans;
+}
+
+Spans Spans::everywhere(int width, int height) {
+  Spans spans = nowhere(width, height, 64);
+  std::swap(spans.near, spans.far);
   return spans;
 }
 
@@ -309,9 +368,35 @@ bool SpanSearch::look(std::vector<Ray>& rays, int step) {
 
 std::optional<Spans> find_spans(SpanSearch& search, BoxBounds* bounds, int width, int height,
                                 int factor, PrepassReport& report) {
-  auto spans = Prepass(search, width, height, factor, report).run(bounds);
-  report.evaluations = search.evaluations();
-  return spans;
+  const std::int64_t pixels = std::int64_t{width} * height;
+  std::optional<Possible> possible;
+  if (bounds != nullptr) {
+    possible = find_possible(*bounds, width, height, pixels);
+    if (!possible) return std::nullopt;
+    report.boxes = possible->asked;
+    report.possible = possible->part;
+    report.proven = possible->part <= little;
+    if (report.proven) return std::move(possible->spans);
+  }
+
+  // What has missed something is done again, in steps half as large: of 1 it can only be all.
+  for (report.step = factor; report.step > 1 || report.step == factor; report.step /= 2) {
+    Prepass prepass(search, width, height, report.step, report);
+    auto spans = prepass.run(possible ? &possible->spans : nullptr);
+    report.evaluations = search.evaluations();
+    if (!spans) return std::nullopt;
+    if (prepass.settled()) {
+      // A closer look at what is neither found nor proven empty.
+      if (possible && !prove_rest(*bounds, *possible, *spans, pixels / 8, little))
+        return std::nullopt;
+      if (possible) report.boxes = possible->asked, report.proven = possible->rest <= little;
+      return spans;
+    }
+    if (report.step == factor) report.missed = prepass.missed();
+  }
+  report.step = 1;
+  report.proven = possible.has_value();
+  return possible ? std::move(possible->spans) : Spans::everywhere(width, height);
 }
 
 void write_spans(const Spans& spans, int width, int height, const std::string& file) {

@@ -24,6 +24,8 @@ struct Spans {
 
   // Of a picture of this size in pixels, without matter.
   static Spans nowhere(int width, int height, int cell);
+  // All of it may be matter.
+  static Spans everywhere(int width, int height);
   std::size_t at(int x, int y) const {
     return std::size_t(y) * std::size_t(width) + std::size_t(x);
   }
@@ -39,9 +41,8 @@ struct PrepassReport {
   double possible = 1;        // part of the rays that is not proven empty
   bool proven = false;        // what is outside the spans is proven empty
   std::int64_t searched = 0;  // rays looked at, of whatever step
-  std::int64_t probes = 0;    // pixels looked at step by step, wherever they are
-  std::int64_t missed = 0;    // those with matter that the coarse search did not find
-  std::int64_t grown = 0;     // cells added where matter went on beyond those found
+  std::int64_t missed = 0;    // rays that met what the first search had not found
+  int step = 1;               // of the search that missed nothing; 1: all that may hold matter
   double evaluations = 0;     // sum of the program's `evaluations`, where it sets them
 };
 
@@ -73,8 +74,9 @@ class SpanSearch {
 // The whole prepass of one frame. With `bounds`, what is not proven empty is all there is to look
 // at; where it is little it is the result, and nothing is missed. Else every `factor`th pixel and
 // step of it is looked at and widened by one cell on all sides; then followed wherever matter goes
-// on beyond the cells found; then single pixels are probed for what is too thin to have been seen,
-// which is followed too. Nothing when cancelled or failed.
+// on beyond the cells found. Then others of these steps and all steps of single pixels are looked
+// at: where they meet what was not found, all is done again with half the factor, and with the
+// factor 1 all that may hold matter is the result. Nothing when cancelled or failed.
 std::optional<Spans> find_spans(SpanSearch& search, BoxBounds* bounds, int width, int height,
                                 int factor, PrepassReport& report);
 

@@ -144,48 +144,77 @@ std::vector<Box> halved(const std::vector<Box>& boxes, int width, int height) {
   return parts;
 }
 
+// What the rays of a box march through.
+double march(const Box& box) {
+  return double(box.size) * box.size * std::max(0.0, double(box.far) - double(box.near));
+}
+
 }  // namespace
 
-std::optional<Possible> find_possible(BoxBounds& bounds, int width, int height, int finest,
-                                      std::int64_t most) {
-  Possible found{.spans = Spans::nowhere(width, height, finest)};
-  int size = finest;
-  while (size < largest_block) size *= 2;
+std::optional<Possible> find_possible(BoxBounds& bounds, int width, int height, std::int64_t most) {
+  Possible found{.spans = Spans::nowhere(width, height, 1)};
 
   // What each block marches through.
   std::vector<Box> boxes;
-  for (int y = 0; y < height; y += size)
-    for (int x = 0; x < width; x += size) boxes.push_back({x, y, size});
+  for (int y = 0; y < height; y += largest_block)
+    for (int x = 0; x < width; x += largest_block) boxes.push_back({x, y, largest_block});
   if (!bounds.look(boxes)) return std::nullopt;
-  found.boxes = static_cast<std::int64_t>(boxes.size());
-  const auto march = [](const Box& box) {
-    return double(box.size) * box.size * std::max(0.0, double(box.far) - double(box.near));
-  };
-  double all = 0;
-  for (const Box& box : boxes) all += march(box);
+  found.asked = static_cast<std::int64_t>(boxes.size());
+  for (const Box& box : boxes) found.all += march(box);
   std::erase_if(boxes, [](const Box& box) { return !may_hold(box); });
 
   // In pieces about as long as wide, for a march as long as the picture is high; then halved.
   std::vector<Box> next;
   for (const Box& box : boxes)
-    for (const Box& piece : pieces_of(box, std::max(1, height / size))) next.push_back(piece);
-  while (!next.empty() && found.boxes + static_cast<std::int64_t>(next.size()) <= most) {
+    for (const Box& piece : pieces_of(box, std::max(1, height / largest_block)))
+      next.push_back(piece);
+  while (!next.empty() && found.asked + static_cast<std::int64_t>(next.size()) <= most) {
     if (!bounds.look(next)) return std::nullopt;
-    found.boxes += static_cast<std::int64_t>(next.size());
+    found.asked += static_cast<std::int64_t>(next.size());
     std::erase_if(next, [](const Box& box) { return !may_hold(box); });
     boxes = std::move(next);
     next.clear();
-    if (!boxes.empty() && boxes.front().size > finest) next = halved(boxes, width, height);
+    if (!boxes.empty() && boxes.front().size > 1) next = halved(boxes, width, height);
   }
 
   for (const Box& box : boxes)
     each_cell(found.spans, box, [&](std::size_t i) { found.spans.widen(i, box.near, box.far); });
   double marched = 0;
   for (std::size_t i = 0; i < found.spans.near.size(); ++i)
-    if (!found.spans.empty(i))
-      marched += march({0, 0, finest, found.spans.near[i], found.spans.far[i]});
-  found.part = all > 0 ? marched / all : 0;
+    if (!found.spans.empty(i)) marched += march({0, 0, 1, found.spans.near[i], found.spans.far[i]});
+  found.part = found.all > 0 ? marched / found.all : 0;
+  found.boxes = std::move(boxes);
   return found;
+}
+
+bool prove_rest(BoxBounds& bounds, Possible& possible, Spans& found, std::int64_t most,
+                double little) {
+  const auto is_found = [&](const Box& box) {
+    bool all = true;
+    each_cell(found, box, [&](std::size_t i) {
+      all = all && found.near[i] <= box.near && found.far[i] >= box.far;
+    });
+    return all;
+  };
+  std::vector<Box> boxes = possible.boxes;
+  std::erase_if(boxes, is_found);
+  while (!boxes.empty() && boxes.front().size > 1) {
+    std::vector<Box> next = halved(boxes, found.width * found.cell, found.height * found.cell);
+    std::erase_if(next, is_found);
+    most -= static_cast<std::int64_t>(next.size());
+    if (most < 0) break;
+    if (!bounds.look(next)) return false;
+    possible.asked += static_cast<std::int64_t>(next.size());
+    std::erase_if(next, [](const Box& box) { return !may_hold(box); });
+    boxes = std::move(next);
+  }
+  double left = 0;
+  for (const Box& box : boxes) left += march(box);
+  possible.rest = possible.all > 0 ? left / possible.all : 0;
+  if (possible.rest > little) return true;
+  for (const Box& box : boxes)
+    each_cell(found, box, [&](std::size_t i) { found.widen(i, box.near, box.far); });
+  return true;
 }
 
 }  // namespace pse::app

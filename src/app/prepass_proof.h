@@ -15,13 +15,6 @@
 
 namespace pse::app {
 
-// What is not proven empty.
-struct Possible {
-  Spans spans;             // all of it, and where a ray has two stretches, what is between
-  double part = 1;         // of what the rays march through, the part in the spans
-  std::int64_t boxes = 0;  // whose bounds were computed
-};
-
 // Asks the program of the bounds for boxes: pixels x0 <= x <= x1, y0 <= y <= y1, and the depths
 // from near to far along their rays.
 class BoxBounds {
@@ -49,9 +42,23 @@ class BoxBounds {
   RunStatus& status_;
 };
 
-// Halves boxes down to `finest` pixels, or as long as no more than `most` boxes are asked for.
-// Nothing when cancelled or failed.
-std::optional<Possible> find_possible(BoxBounds& bounds, int width, int height, int finest,
-                                      std::int64_t most);
+// What is not proven empty.
+struct Possible {
+  Spans spans;             // all of it, and where a ray has two stretches, what is between
+  double part = 1;         // of what the rays march through, the part in the spans
+  std::int64_t asked = 0;  // boxes whose bounds were computed
+  std::vector<BoxBounds::Box> boxes;  // all of it, without what is between
+  double all = 0;                     // what the rays march through, in pixels times depth
+  double rest = 1;                    // of that, the part that prove_rest() has left
+};
+
+// Halves boxes down to pixels, or as long as no more than `most` are asked for. Nothing when
+// cancelled or failed.
+std::optional<Possible> find_possible(BoxBounds& bounds, int width, int height, std::int64_t most);
+
+// Halves what is possible and not in `found`, as far as `most` more boxes go. What is left then is
+// added to `found` where it is at most the part `little` of all. False when cancelled or failed.
+bool prove_rest(BoxBounds& bounds, Possible& possible, Spans& found, std::int64_t most,
+                double little);
 
 }  // namespace pse::app

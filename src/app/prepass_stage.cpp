@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <stdlib.h>
 
+#include <algorithm>
+
 #include "app/compile_settings.h"
 #include "app/function_program.h"
 #include "app/prepass_proof.h"
@@ -28,6 +30,10 @@ std::shared_ptr<const Program> compile_bounds(ProgramFile& program, const LowerH
   Diagnostics ignored;
   auto front = compile_front(program.sources, program.file, host, options, ignored);
   if (!front) return nullptr;
+  // A span of the program's own making tells no density.
+  if (std::none_of(front->module.inputs.begin(), front->module.inputs.end(),
+                   [](const ir::Input& input) { return input.name == "prepass.step"; }))
+    return nullptr;
   front->calls.clear();
   bounds::bound_outputs(front->module, {.known = {{"prepass.step", -1.0f}}});
   front->program.outputs.clear();
@@ -105,7 +111,7 @@ Exit PrepassStage::run(Session& session, RenderOptions& options, const ProgramFi
                       "put %04d into the name where the frame's number should stand");
   RunStatus status;
   const SignalWatch watch(signals, status);
-  PrepassReport total;
+  PrepassReport total{.step = options.prepass};
   bool proven = true;
   double possible = 0;
   for (const int frame : frames) {
@@ -130,15 +136,20 @@ Exit PrepassStage::run(Session& session, RenderOptions& options, const ProgramFi
                                        : "the prepass stopped");
     }
     write_spans(*spans, size.width, size.height, *image::frame_name(pattern, frame));
-    total.probes += found.probes, total.missed += found.missed;
+    total.missed += found.missed;
+    if (found.missed > 0) total.step = std::min(total.step, found.step);
     total.evaluations += found.evaluations, total.boxes += found.boxes;
     proven = proven && found.proven, possible = std::max(possible, found.possible);
   }
   if (total.missed > 0)
-    session.console.warning("prepass", fmt::format(
-        "the prepass did not see matter at {} of {} probes: it is thinner than {} pixels or steps. "
-        "It was followed from there; a smaller --prepass sees more",
-        total.missed, total.probes, options.prepass));
+    session.console.warning(
+        "prepass",
+        fmt::format(
+            "the prepass did not see all matter at first: some is thinner than {} pixels or "
+            "steps. {}, which takes longer",
+            options.prepass,
+            total.step > 1 ? fmt::format("It looked again in steps of {}", total.step)
+                           : "All that may hold matter is marched through"));
   if (counts)
     session.console.note(fmt::format("prepass: {:.0f} density evaluations", total.evaluations));
   if (options.count_evaluations && bounded)

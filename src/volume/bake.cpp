@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace pse::volume {
 namespace {
 
 constexpr int batch_blocks = 2;  // along each side
 constexpr int batch_side = batch_blocks * block_side;
+constexpr std::int64_t estimated_batches = 256;  // that tell how much memory all will take
 constexpr std::int64_t batch_voxels = std::int64_t{batch_side} * batch_side * batch_side;
 
 // The nearest number that 16 bits can hold is 0 below the first of these, infinite from the second.
@@ -140,11 +142,28 @@ class Gatherer {
   std::size_t density_ = static_cast<std::size_t>(-1);  // which grid it is, if any
 };
 
+// Counts what blocks would take.
+class Tally : public GridWriter {
+ public:
+  void add(std::size_t, const std::array<int, 3>&, std::span<const float* const> planes,
+           const std::array<std::uint64_t, 8>& active) override {
+    if (!is_even(planes, active)) bytes_ += block_bytes * planes.size();
+  }
+  std::size_t bytes() const override { return bytes_; }
+  Result<void> write(const std::string&, const std::map<std::string, std::string>&,
+                     const std::string&) override {
+    return fail(ErrorKind::cannot_write, "there is nothing to write");
+  }
+
+ private:
+  std::size_t bytes_ = 0;
+};
+
 }  // namespace
 
 BakeResult bake(const Program& program, FrameState& state, const Lattice& lattice,
-                const std::vector<BakedGrid>& grids, GridWriter& writer,
-                const BakeOptions& options, RunStatus& status) {
+                const std::vector<BakedGrid>& grids, GridWriter& writer, const BakeOptions& options,
+                RunStatus& status) {
   const auto start = std::chrono::steady_clock::now();
   BakeResult result;
   program.kernel->run_frame(state, status);
@@ -173,28 +192,62 @@ BakeResult bake(const Program& program, FrameState& state, const Lattice& lattic
                at);
   };
 
-  // Run them.
+  // How some of them, or all, are run.
+  const std::int64_t batches = count[0] * count[1] * count[2];
   const LatticeSource source(program.module(), lattice);
+  const auto run = [&](std::int64_t number, const auto& pick, Gatherer& gatherer) {
+    BatchPlan plan;
+    plan.batches = number;
+    plan.capacity = batch_voxels;
+    plan.count = [](std::int64_t) { return batch_voxels; };
+    plan.fill = [&](std::int64_t k, std::span<float* const> planes) {
+      each_block(pick(k), [&](const std::array<int, 3>& block, std::size_t at) {
+        source.fill({block[0] * block_side, block[1] * block_side, block[2] * block_side},
+                    block_side, at, planes);
+      });
+    };
+    plan.drain = [&](std::int64_t k, std::span<float* const> planes) {
+      each_block(pick(k), [&](const std::array<int, 3>& block, std::size_t at) {
+        gatherer.take(block, at, planes);
+      });
+    };
+    plan.ordered = true;
+    plan.threads = options.threads;
+    if (number == batches) plan.progress = options.progress;
+    BatchEnd end = run_batches(program, state, plan, status);
+    if (end.end == RunEnd::failed) end.failed_batch = pick(end.failed_batch);
+    return end;
+  };
+
+  // Where memory might not do, an estimate from batches spread over all.
+  BatchEnd end;
+  std::size_t components = 0;
+  for (const BakedGrid& grid : grids) components += grid.outputs.size();
+  const double most = double(batches) * batch_voxels / block_voxels * double(block_bytes);
+  if (batches > estimated_batches && most * double(components) > double(options.memory_limit)) {
+    Tally tally;
+    BakeResult ignored;
+    BakeOptions patient = options;
+    patient.stop_at_not_finite = false;
+    patient.memory_limit = std::numeric_limits<std::size_t>::max();
+    Gatherer gatherer(lattice, grids, tally, patient, status, ignored);
+    const std::int64_t stretch = batches / estimated_batches;
+    end = run(
+        estimated_batches, [&](std::int64_t k) { return k * stretch + (k * 2654435761) % stretch; },
+        gatherer);
+    const double all = double(tally.bytes()) * double(batches) / estimated_batches;
+    if (end.end == RunEnd::finished && all > 2 * double(options.memory_limit)) {
+      result.out_of_memory = true;
+      result.estimate = all;
+      return result;
+    }
+  }
+
+  // All of them.
   Gatherer gatherer(lattice, grids, writer, options, status, result);
-  BatchPlan plan;
-  plan.batches = count[0] * count[1] * count[2];
-  plan.capacity = batch_voxels;
-  plan.count = [](std::int64_t) { return batch_voxels; };
-  plan.fill = [&](std::int64_t batch, std::span<float* const> planes) {
-    each_block(batch, [&](const std::array<int, 3>& block, std::size_t at) {
-      source.fill({block[0] * block_side, block[1] * block_side, block[2] * block_side},
-                  block_side, at, planes);
-    });
-  };
-  plan.drain = [&](std::int64_t batch, std::span<float* const> planes) {
-    each_block(batch, [&](const std::array<int, 3>& block, std::size_t at) {
-      gatherer.take(block, at, planes);
-    });
-  };
-  plan.ordered = true;
-  plan.threads = options.threads;
-  plan.progress = options.progress;
-  const BatchEnd end = run_batches(program, state, plan, status);
+  if (end.end == RunEnd::finished)
+    end = run(
+        batches, [](std::int64_t k) { return k; }, gatherer);
 
   result.end = end.end;
   result.failed_check = end.failed_check;

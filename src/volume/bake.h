@@ -29,6 +29,7 @@ struct BakeResult {
   std::int32_t failed_check = -1;
   std::array<double, 3> failed_at{};  // where a check failed
   bool out_of_memory = false;         // the limit was reached
+  double estimate = 0;                // bytes, where they were so far above it that nothing was run
   std::int64_t not_finite = 0;        // values that were NaN or infinite; stored as background
   std::size_t not_finite_grid = 0;    // of the first one
   std::array<double, 3> not_finite_at{};
@@ -39,7 +40,8 @@ struct BakeResult {
 
 // Matter is where the grid called `density` is above 0; without one, where any value is not 0, or
 // within the band of a level set. The state must have its uniforms and externals set; this runs the
-// frame function. The grids do not depend on threads.
+// frame function. The grids do not depend on threads. Where they might not fit into the memory, some
+// blocks tell first about how much all will take.
 BakeResult bake(const Program& program, FrameState& state, const Lattice& lattice,
                 const std::vector<BakedGrid>& grids, GridWriter& writer,
                 const BakeOptions& options, RunStatus& status);

@@ -29,17 +29,26 @@ Result<image::Layer> choose_layer(const image::ImageReader& reader, const std::s
   if (found != nullptr && (found->components() == 1 || found->components() >= 3)) return *found;
   std::string names;
   for (const image::Layer& layer : layers) names += (names.empty() ? "" : ", ") + layer.name;
-  return fail(ErrorKind::bad_request,
-              file + " has no layer " + (wanted.empty() ? "color" : wanted) +
-                  " of 1 or 3 channels; it has " + names);
+  return fail(ErrorKind::bad_request, file + " has no layer " +
+                                          (wanted.empty() ? "color" : wanted) +
+                                          " of 1 or 3 channels; it has " + names);
 }
 
 Result<Slices> find_slices(const std::string& pattern, const std::string& layer) {
   Slices slices;
-  for (const int frame : image::existing_frames(pattern))
-    slices.files.push_back(*image::frame_name(pattern, frame));
-  if (slices.files.empty())
-    return fail(ErrorKind::not_found, "there are no pictures " + pattern);
+  const std::vector<int> numbers = image::existing_frames(pattern);
+  for (const int frame : numbers) slices.files.push_back(*image::frame_name(pattern, frame));
+  if (slices.files.empty()) return fail(ErrorKind::not_found, "there are no pictures " + pattern);
+  // Every number, or every so many; what else is not there is missing.
+  for (std::size_t i = 2; i < numbers.size(); ++i)
+    if (numbers[i] - numbers[i - 1] != numbers[1] - numbers[0]) {
+      const bool early = numbers[i] - numbers[i - 1] < numbers[1] - numbers[0];
+      const int before = early ? numbers[0] : numbers[i - 1];
+      return fail(ErrorKind::not_found,
+                  "the stack " + pattern + " has a gap: after " +
+                      *image::frame_name(pattern, before) + " comes " +
+                      *image::frame_name(pattern, early ? numbers[1] : numbers[i]));
+    }
   const auto reader = image::open_reader(slices.files.front());
   if (!reader) return std::unexpected(reader.error());
   const auto chosen = choose_layer(**reader, slices.files.front(), layer);
@@ -102,6 +111,11 @@ Result<GridData> read_stack(const std::string& pattern, const std::string& layer
                       std::to_string(width) + "x" + std::to_string(height));
     const auto chosen = choose_layer(**reader, file, slices->layer.name);
     if (!chosen) return std::unexpected(chosen.error());
+    if (components_of(*chosen) != data.components)
+      return fail(ErrorKind::bad_request, "the slices differ in channels: " + file + " has " +
+                                              std::to_string(chosen->components()) + " of " +
+                                              chosen->name + ", " + slices->files.front() + " " +
+                                              std::to_string(slices->layer.components()));
     std::vector<std::string> channels;
     for (const int channel : chosen->channels)
       channels.push_back((*reader)->spec().channels[static_cast<std::size_t>(channel)].name);
@@ -112,8 +126,7 @@ Result<GridData> read_stack(const std::string& pattern, const std::string& layer
       for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
           // Rows of a picture run downward.
-          const float value =
-              image->at(channel, frame.x0 + x, frame.y0 + height - 1 - y);
+          const float value = image->at(channel, frame.x0 + x, frame.y0 + height - 1 - y);
           const std::int64_t block =
               (std::int64_t{x >> 3} * data.size[1] + (y >> 3)) * data.size[2] + (z >> 3);
           const std::int64_t voxel = 64 * (x & 7) + 8 * (y & 7) + (z & 7);

@@ -5,6 +5,13 @@
 
 namespace pse::volume {
 
+std::string shown_name(const std::string& name) {
+  if (name.empty()) return "(no name)";
+  std::string shown;
+  for (const char c : name) shown += static_cast<unsigned char>(c) < ' ' || c == 0x7f ? '?' : c;
+  return shown;
+}
+
 Result<Vdb*> open_vdb() {
   static const Result<Vdb*> vdb = []() -> Result<Vdb*> {
     const auto found = image::load_module("pse_vdb", "pse_vdb");

@@ -25,6 +25,8 @@ using image::Result;
 // 64 x + 8 y + z.
 inline constexpr int block_side = 8;
 inline constexpr int block_voxels = 512;
+// Roughly what a stored block takes while a grid is made, for each component.
+inline constexpr std::size_t block_bytes = block_voxels * sizeof(float) + 100;
 
 enum class GridKind {
   fog,        // a density or another quantity; 0 where there is nothing
@@ -78,6 +80,17 @@ struct GridData {
   std::vector<float> even;    // values of even blocks: components each; the first is the background
 };
 
+// Whether a block is one value, with or without all its voxels, which takes no memory for them.
+inline bool is_even(std::span<const float* const> planes,
+                    const std::array<std::uint64_t, 8>& active) {
+  for (const std::uint64_t word : active)
+    if (word != (active[0] == 0 ? std::uint64_t{0} : ~std::uint64_t{0})) return false;
+  for (const float* plane : planes)
+    for (int i = 1; i < block_voxels; ++i)
+      if (plane[i] != plane[0]) return false;
+  return true;
+}
+
 // Collects the blocks of one file. Blocks of a grid may come in any order; the file does not depend
 // on it.
 class GridWriter {
@@ -120,6 +133,9 @@ class Vdb {
                                 const std::function<bool(int, int, int)>& inside,
                                 const std::function<bool()>& keep_on) = 0;
 };
+
+// The name of a grid as messages show it: names in a file may hold anything.
+std::string shown_name(const std::string& name);
 
 // Opens the module. The error says what is missing.
 Result<Vdb*> open_vdb();

@@ -31,7 +31,7 @@ Result<GridInfo> VolumeCache::choose(const std::string& file, const std::string&
                                               "` holds values of type " + there.type +
                                               "; numbers and vectors of three can be read");
     }
-    names += (names.empty() ? "" : ", ") + there.name;
+    names += (names.empty() ? "" : ", ") + shown_name(there.name);
   }
   if (grids.empty()) return fail(ErrorKind::bad_request, file + " holds no grid");
   return fail(ErrorKind::bad_request, file + " has no grid `" + (grid.empty() ? "density" : grid) +

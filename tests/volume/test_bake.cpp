@@ -1,5 +1,7 @@
 // `pse bake`: what the program says at a voxel's centre is what the file holds there, and nothing
 // is stored where there is nothing.
+#include <sys/mount.h>
+
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -217,6 +219,18 @@ TEST_F(Bake, MemoryIsBounded) {
   EXPECT_FALSE(exists("a.vdb"));
 }
 
+TEST_F(Bake, WhatCannotFitIsRefusedBeforeItTakesMemory) {
+  // Four million million voxels, all of them other numbers: some blocks tell.
+  bake("density = 1 + 0.1 * x\n", {"--res", "16384"});
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_TRUE(contains(ended.err, "the volume would take about")) << ended.err;
+  EXPECT_TRUE(contains(ended.err, "lower --res, or raise --memory")) << ended.err;
+  EXPECT_FALSE(exists("a.vdb"));
+  // Even blocks take none.
+  bake("density = 1\n", {"--res", "256", "--memory", "1"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+}
+
 TEST_F(Bake, InfoTellsOfGrids) {
   bake("density = length(point) < 1 ? 0.5 : 0\n", {"--res", "16"});
   Ended told = pse({"info", "a.vdb"});
@@ -224,6 +238,10 @@ TEST_F(Bake, InfoTellsOfGrids) {
   for (const char* part : {"density: float, fog volume", "with values", "values  0 to 0.5"})
     EXPECT_TRUE(contains(told.out, part)) << told.out;
   EXPECT_TRUE(contains(pse({"info", "--json", "a.vdb"}).out, "\"kind\": \"volume\""));
+  bake("density = -1\n", {"--res", "8"});
+  told = pse({"info", "a.vdb"});
+  EXPECT_TRUE(contains(told.out, "none with values")) << told.out;
+  bake("density = length(point) < 1 ? 0.5 : 0\n", {"--res", "16"});
   file("cut.vdb", read("a.vdb").substr(0, 700));
   told = pse({"info", "cut.vdb"});
   EXPECT_EQ(told.status, 4);
@@ -290,6 +308,29 @@ TEST_F(Bake, MeshesBecomeDistances) {
     EXPECT_NEAR(at(grid, 2, 2, 2), 0.3f, 1e-3f);
     EXPECT_EQ(info("cube.vdb").grids.front().kind, volume::GridKind::level_set);
   }
+}
+
+// A disk of 64 KiB, where the test may mount one.
+TEST_F(Bake, AFullDiskIsToldAndLeavesTheOldFile) {
+  const std::string disk = (folder() / "disk").string();
+  std::filesystem::create_directory(disk);
+  if (::mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=65536") != 0)
+    GTEST_SKIP() << "no disk can be mounted";
+  file("disk/n.vdb", "old");
+  file("a.pse", "density = 1.5 + Noise(9 * point)\n");
+  const Ended full = pse({"bake", "a.pse", "-o", "disk/n.vdb", "--res", "64"});
+  const Ended fresh = pse({"bake", "a.pse", "-o", "disk/new.vdb", "--res", "64"});
+  const std::string old = read("disk/n.vdb");
+  std::vector<std::string> left;
+  for (const auto& entry : std::filesystem::directory_iterator(disk))
+    left.push_back(entry.path().filename().string());
+  ::umount(disk.c_str());
+  for (const Ended& one : {full, fresh}) {
+    EXPECT_EQ(one.status, 5) << one.err;
+    EXPECT_TRUE(contains(one.err, "no room to write disk/n")) << one.err;
+  }
+  EXPECT_EQ(old, "old");
+  EXPECT_EQ(left, std::vector<std::string>{"n.vdb"});
 }
 
 TEST_F(Bake, AnOldFileStaysUntilTheNewOneIsWhole) {

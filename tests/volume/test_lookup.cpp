@@ -92,6 +92,40 @@ TEST_F(Lookup, PicturesAreSlices) {
       ASSERT_EQ(value, 0.0f) << name;
 }
 
+TEST_F(Lookup, StacksWithGapsOrOtherPicturesAreRefused) {
+  file("one.pse", "v = px\n");
+  file("three.pse", "v = [px py 1]\n");
+  const auto slices = [&](const std::string& numbers, const std::string& program = "one.pse") {
+    ASSERT_EQ(pse({"render", program, "-o", "s.%02d.exr", "-f", numbers, "--res", "8"}).status, 0);
+  };
+  const std::string program = "a = volume(\"s.%02d.exr\", point)\n";
+  slices("0-5");
+  std::filesystem::remove(folder() / "s.03.exr");
+  EXPECT_TRUE(contains(error_of(program, 4), "has a gap: after s.02.exr comes s.04.exr")) << ended.err;
+  slices("3", "three.pse");
+  EXPECT_TRUE(contains(error_of(program, 4), "s.03.exr has 3 of v, s.00.exr 1")) << ended.err;
+  // Numbers may have a step; the first two tell it, unless they are where the gap is.
+  for (const char* gone : {"s.01.exr", "s.03.exr", "s.05.exr"})
+    std::filesystem::remove(folder() / gone);
+  error_of(program, 0);
+  slices("3");
+  EXPECT_TRUE(contains(error_of(program, 4), "has a gap: after s.00.exr comes s.02.exr")) << ended.err;
+}
+
+TEST_F(Lookup, WhatIsNoFileIsNamed) {
+  file("empty.vdb", "");
+  EXPECT_TRUE(contains(error_of("a = volume(\"empty.vdb\", point)\n", 4), "empty.vdb is empty"));
+  std::filesystem::create_directory(folder() / "folder.vdb");
+  EXPECT_TRUE(contains(error_of("a = volume(\"folder.vdb\", point)\n", 4), "it is a folder"));
+  std::filesystem::create_symlink("/dev/zero", folder() / "zero.vdb");
+  EXPECT_TRUE(contains(error_of("a = volume(\"zero.vdb\", point)\n", 4), "it is no file"));
+}
+
+TEST_F(Lookup, NamesOfGridsAreShownWithoutControl) {
+  EXPECT_EQ(volume::shown_name(""), "(no name)");
+  EXPECT_EQ(volume::shown_name("a\x1b[31m\nb"), "a?[31m?b");
+}
+
 TEST_F(Lookup, ErrorsSayWhatIsThere) {
   make_ramp();
   EXPECT_TRUE(contains(error_of("a = volume(\"ramp.vdb\", point, \"smoke\")\n", 4),

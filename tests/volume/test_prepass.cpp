@@ -144,12 +144,81 @@ TEST_F(Prepass, WhatMovesIsLookedForAllThroughTheShutter) {
   EXPECT_EQ(missing, 0);
 }
 
-TEST_F(Prepass, TellsOfSpecksThatItCannotSee) {
-  // Motes of a third of a pixel's size, far apart: no search sees them all, so it is said.
-  program("    return length(fract(16 * p) - 0.5) < 0.12 ? 0.9 : 0\n");
-  render({"--prepass", "8"});
-  EXPECT_TRUE(contains(ended.err, "the prepass did not see matter")) << ended.err;
+TEST_F(Prepass, ASpanOfTheProgramsOwnMakingIsNoDensity) {
+  file("a.pse",
+       "function density(p)\n    return soft_sphere(p, 0.5, 0.1)\n"
+       "function light(p, d)\n    return white * p.z\n"
+       "origin = [x y 2]\nspan = sphere_span(origin, [0 0 -1], 0.7)\n"
+       "color = raymarch(density, light, origin, [0 0 -1], span.x, span.y, 0.02, 20)\n");
+  const image::Image whole = render({}), fast = render({"--prepass", "4"});
+  EXPECT_EQ(whole.planes, fast.planes);
 }
+
+TEST_F(Prepass, TellsOfSpecksThatItDidNotSeeAtFirst) {
+  // Motes of a third of a pixel's size, far apart: no search sees them all, so all is marched.
+  program("    return length(fract(16 * p) - 0.5) < 0.12 ? 0.9 : 0\n");
+  const image::Image whole = render({}), fast = render({"--prepass", "8"});
+  EXPECT_TRUE(contains(ended.err, "the prepass did not see all matter at first")) << ended.err;
+  EXPECT_TRUE(contains(ended.err, "thinner than 8 pixels or steps")) << ended.err;
+  EXPECT_EQ(whole.planes, fast.planes);
+}
+
+TEST_F(Prepass, ProvesWhatIsLeftBesideABody) {
+  // The body is too large for a proof alone, and four specks of a pixel are beside all samples.
+  file("a.pse",
+       "function density(p)\n    d = soft_sphere(p + [0.5 0 0], 0.5, 0.05)\n"
+       "    for i in [1 .. 4]\n"
+       "        c = [0.5 + 0.7 * sin(2.1 * i) 0.9 * cos(1.7 * i) 0.8 * sin(i)]\n"
+       "        d = max(d, norm(p - c) < 0.012 ? 1 : 0)\n    return d\n"
+       "color = hypertexture(density, step = 0.02, shadows = 0, crevices = 0)\n");
+  const image::Image whole = render({}), fast = render({"--prepass", "8", "--stats"});
+  EXPECT_TRUE(contains(ended.err, "nothing is missed")) << ended.err;
+  EXPECT_EQ(whole.planes, fast.planes);
+}
+
+// What lies between samples, by its nature: thin, small, sharp, at the border, or moving.
+struct Opponent {
+  const char *name, *text;
+  const char* res = "96x96";
+};
+class PrepassAgainst : public Prepass, public ::testing::WithParamInterface<Opponent> {};
+
+TEST_P(PrepassAgainst, GivesTheSamePicture) {
+  file("a.pse", std::string(GetParam().text) +
+                    "color = hypertexture(density, init_density = moment, step = 0.02,\n"
+                    "    shadows = 0, crevices = 0)\n"
+                    "function moment(origin, dir, chance)\n    return chance\n");
+  const image::Image whole = render({"--res", GetParam().res});
+  EXPECT_EQ(whole.planes, render({"--res", GetParam().res, "--prepass", "4"}).planes) << ended.err;
+}
+
+constexpr Opponent opponents[] = {
+    {"ThinWalls",
+     "function density(p)\n    g = dot(sin(5 * p), cos(5 * [p.y p.z p.x]))\n"
+     "    return abs(g) < 0.06 and norm(p) < 1.3 ? 1 : 0\n"},
+    {"Hairs",
+     "function density(p)\n"
+     "    a = norm([p.x - 0.3 * sin(3 * p.y), p.z - 0.3 * cos(5 * p.y)]) < 0.006\n"
+     "    b = norm([p.y - 0.5 * sin(2 * p.x), p.z + 0.4 * cos(3 * p.x)]) < 0.006\n"
+     "    return (a or b) and norm(p) < 1.3 ? 1 : 0\n"},
+    {"Dust",
+     "function density(p)\n    c = floor(4 * p)\n"
+     "    o = 0.3 + 0.4 * [hash(c.x, c.y, c.z, 1) hash(c.x, c.y, c.z, 2) hash(c.x, c.y, c.z, 3)]\n"
+     "    return norm(4 * p - c - o) < 0.06 and norm(p) < 1.3 ? 1 : 0\n"},
+    {"SheetsAtTheBordersOfTheBox",
+     "function density(p)\n    sheet = abs(p.z - 1.44) < 0.005 and p.x < 0\n"
+     "    return p.y < -1.42 or p.x > 1.43 or sheet ? 1 : 0\n"},
+    {"SharpNoise",
+     "function density(p)\n    return Noise(9 * p) > 0.45 and norm(p) < 1.2 ? 1 : 0\n", "128x128"},
+    {"Below0Outside",
+     "function density(p)\n    d = 30 * (0.02 - abs(norm(p) - 0.8))\n"
+     "    return d - (p.x > 0.2 ? 100 : 0)\n"},
+    {"ABlade",
+     "function density(p, t)\n"
+     "    c = [1.1 * sin(5 * t + 2 * p.z), 0.8 * cos(4 * t)]\n"
+     "    return norm([p.x - c.x, p.y - c.y]) < 0.03 and abs(p.z) < 1 ? 1 : 0\n"}};
+INSTANTIATE_TEST_SUITE_P(Prepass, PrepassAgainst, ::testing::ValuesIn(opponents),
+                         [](const auto& one) { return one.param.name; });
 
 TEST_F(Prepass, IsAnImageOfNearAndFar) {
   program("    return length(p) < 0.2 ? 0.5 : 0\n");

@@ -151,6 +151,8 @@ Result<GridData> convert(const openvdb::GridBase& grid, const std::string& file,
     return blocks_of(*g, file, data, limit);
   if (const auto* g = as.template operator()<openvdb::BoolGrid>())
     return blocks_of(*g, file, data, limit);
+  if (const auto* g = as.template operator()<openvdb::MaskGrid>())
+    return blocks_of(*g, file, data, limit);
   if (const auto* g = as.template operator()<openvdb::Vec3SGrid>())
     return blocks_of(*g, file, data, limit);
   if (const auto* g = as.template operator()<openvdb::Vec3DGrid>())

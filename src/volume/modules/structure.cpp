@@ -2,8 +2,11 @@
 // type, three offsets, and its own metadata behind the first of them.
 #include "volume/modules/structure.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -99,8 +102,14 @@ Result<void> check_structure(const std::string& file) {
   std::error_code error;
   if (!std::filesystem::exists(file, error))
     return fail(ErrorKind::not_found, "there is no file " + file);
+  if (!std::filesystem::is_regular_file(file, error))
+    return fail(ErrorKind::cannot_read,
+                "cannot read " + file + ": it is " +
+                    (std::filesystem::is_directory(file, error) ? "a folder" : "no file"));
   const auto size = std::filesystem::file_size(file, error);
-  if (error) return fail(ErrorKind::cannot_read, "cannot read " + file);
+  if (error || ::access(file.c_str(), R_OK) != 0)
+    return fail(ErrorKind::cannot_read, "cannot read " + file + ": " + std::strerror(errno));
+  if (size == 0) return fail(ErrorKind::damaged, file + " is empty: write it anew");
   try {
     Walk(file, size).go();
     return {};

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "volume/modules/parts.h"
+#include "volume/modules/structure.h"
 
 namespace pse::volume {
 namespace {
@@ -41,8 +42,9 @@ typename Grid::ValueType value_at(std::span<const float* const> planes, std::siz
     return planes[0][voxel];
 }
 
+// True where the block takes memory for its voxels.
 template <class Grid>
-void add_block(Grid& grid, const std::array<int, 3>& block, std::span<const float* const> planes,
+bool add_block(Grid& grid, const std::array<int, 3>& block, std::span<const float* const> planes,
                const std::array<std::uint64_t, 8>& active) {
   using Leaf = typename Grid::TreeType::LeafNodeType;
   static_assert(Leaf::SIZE == block_voxels);
@@ -50,15 +52,10 @@ void add_block(Grid& grid, const std::array<int, 3>& block, std::span<const floa
   const typename Grid::ValueType first = value_at<Grid>(planes, 0);
 
   // An even block is one tile and needs no memory for its voxels.
-  bool even = true;
-  for (const std::uint64_t word : active)
-    even = even && word == (active[0] == 0 ? std::uint64_t{0} : ~std::uint64_t{0});
-  for (std::size_t i = 1; i < block_voxels && even; ++i)
-    even = value_at<Grid>(planes, i) == first;
-  if (even) {
+  if (is_even(planes, active)) {
     if (active[0] != 0 || first != grid.background())
       grid.tree().addTile(1, origin, first, active[0] != 0);
-    return;
+    return false;
   }
 
   auto* leaf = new Leaf(origin, grid.background(), false);
@@ -69,6 +66,7 @@ void add_block(Grid& grid, const std::array<int, 3>& block, std::span<const floa
       if ((active[static_cast<std::size_t>(x)] >> bit & 1) != 0)
         leaf->setValueOn(static_cast<openvdb::Index>(64 * x + bit));
   grid.tree().addLeaf(leaf);
+  return true;
 }
 
 class Writer : public GridWriter {
@@ -94,11 +92,11 @@ class Writer : public GridWriter {
 
   void add(std::size_t grid, const std::array<int, 3>& block, std::span<const float* const> planes,
            const std::array<std::uint64_t, 8>& active) override {
-    if (auto scalar = openvdb::gridPtrCast<openvdb::FloatGrid>(grids_[grid]))
-      add_block(*scalar, block, planes, active);
-    else
-      add_block(*openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids_[grid]), block, planes, active);
-    bytes_ += (block_voxels * sizeof(float) + 100) * static_cast<std::size_t>(planes.size());
+    const auto scalar = openvdb::gridPtrCast<openvdb::FloatGrid>(grids_[grid]);
+    const bool stored = scalar ? add_block(*scalar, block, planes, active)
+                               : add_block(*openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids_[grid]),
+                                           block, planes, active);
+    if (stored) bytes_ += block_bytes * planes.size();
   }
 
   std::size_t bytes() const override { return bytes_; }
@@ -116,6 +114,8 @@ class Writer : public GridWriter {
                               : openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK);
       file.write(grids_, about);
       file.close();
+      // OpenVDB does not tell of a disk that is full; the file then ends too early.
+      if (!check_structure(path)) return fail(ErrorKind::cannot_write, "the file came out damaged");
       return set_identity(path, identity);
     } catch (const std::exception& problem) {
       return fail(ErrorKind::cannot_write, problem.what());
@@ -130,8 +130,7 @@ class Writer : public GridWriter {
   // Merges even blocks into larger ones; gives the inside of a level set its sign.
   void finish(std::size_t i) {
     if (auto scalar = openvdb::gridPtrCast<openvdb::FloatGrid>(grids_[i])) {
-      if (specs_[i].kind == GridKind::level_set)
-        openvdb::tools::signedFloodFill(scalar->tree());
+      if (specs_[i].kind == GridKind::level_set) openvdb::tools::signedFloodFill(scalar->tree());
       openvdb::tools::prune(scalar->tree());
     } else {
       openvdb::tools::prune(openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids_[i])->tree());

@@ -44,7 +44,11 @@ void smooth(const Tile& tile, const Smoothing& by, std::span<float* const> plane
         for (std::size_t k = 0; k < 4; ++k)
           bends[k] =
               choose(alike[k], load<V>(from + steps[k]) + load<V>(from - steps[k]) - twice, V{});
-        const V more = by.axis * (bends[0] + bends[1]) + by.diagonal * (bends[2] + bends[3]);
+        const V straight = by.axis * (bends[0] + bends[1]), most = size(straight);
+        const V slanting = by.diagonal * (bends[2] + bends[3]);
+        // Of waves the second is always the less. What it alone tells of, a bright dot at a corner,
+        // would take light away.
+        const V more = straight + larger(-most, smaller(most, slanting));
         // What is no finite number tells nothing.
         const V mean = choose(size(more) < huge, middle + more, middle);
         if (width - i >= at_once)

@@ -20,7 +20,7 @@ struct PictureOptions {
   int vector_width = 0;
   bool interpret = false;
   Options antialias;
-  Rect clip{};  // empty: all
+  Rect clip{};           // empty: all
   bool reports = false;  // keep the program's expectations, and note where they fail
   bool optimize = true;
   passes::OutlineOptions outline;
@@ -52,8 +52,8 @@ inline CompiledFront lowered(const std::string& text) {
   options.lower.stream = image_plane_names();
   SourceMap sources;
   Diagnostics diagnostics;
-  auto front = compile_front(sources, sources.add("test.pse", text), LowerHost{}, options,
-                             diagnostics);
+  auto front =
+      compile_front(sources, sources.add("test.pse", text), LowerHost{}, options, diagnostics);
   if (!front) throw std::runtime_error(print_text(diagnostics, sources, false));
   return std::move(*front);
 }
@@ -83,8 +83,8 @@ inline Picture render(const std::string& text, const PictureOptions& options = {
   if (!programs) throw std::runtime_error(programs.error());
 
   const ImagePlane plane{.width = options.width, .height = options.height};
-  const Rect window = options.clip.width() > 0 ? options.clip
-                                               : Rect{0, 0, options.width, options.height};
+  const Rect window =
+      options.clip.width() > 0 ? options.clip : Rect{0, 0, options.width, options.height};
   Picture picture{.width = window.width(), .height = window.height()};
   const ir::Module& module = programs->shown->module();
   for (std::size_t o = 0; o < programs->outputs; ++o) {
@@ -101,14 +101,14 @@ inline Picture render(const std::string& text, const PictureOptions& options = {
               tile.planes[o][(y - tile.rect.y0) * tile.rect.width() + x - tile.rect.x0];
   };
   Notes notes{.places = &picture.noted};
-  const Host host{[&](const Program& program) {
-                    FrameState state;
-                    set_plane_uniforms(program.module(), plane, state);
-                    state.externals.assign(program.module().externals.size(),
-                                           {&Notes::call, &notes});
-                    return state;
-                  },
-                  [&](const ir::Module& of) { return image_plane_samples(of, plane); }};
+  const Host host{
+      [&](const Program& program) {
+        FrameState state;
+        set_plane_uniforms(program.module(), plane, state);
+        state.externals.assign(program.module().externals.size(), {&Notes::call, &notes});
+        return state;
+      },
+      [&](const ir::Module& of) { return image_plane_samples(of, plane); }};
   RunStatus status;
   const TileSource source = image_plane_source(
       module, plane, {window.x0 - 2, window.y0 - 2, window.x1 + 2, window.y1 + 2});

@@ -50,7 +50,8 @@ TEST(Expectations, AreNotedWhereTheyFail) {
   for (int py = 0; py < 24; ++py)
     for (int px = 0; px < 24; ++px) {
       const double x = (2 * (px + 0.5) - 24) / 24, y = (24 - 2 * (py + 0.5)) / 24;
-      if (x * x + y * y >= 0.5) expected.emplace(static_cast<float>(px) + 0.5f, static_cast<float>(py) + 0.5f);
+      if (x * x + y * y >= 0.5)
+        expected.emplace(static_cast<float>(px) + 0.5f, static_cast<float>(py) + 0.5f);
     }
   PictureOptions options{.width = 24, .height = 24, .antialias = test::plain(), .reports = true};
   EXPECT_EQ(test::render(disc, options).noted, expected);

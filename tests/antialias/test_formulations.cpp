@@ -24,17 +24,28 @@ std::string line(double degrees, double x, double y) {
 }
 
 Picture draw(const std::string& program) {
-  return render(program, {.width = size, .height = size, .interpret = true, .antialias = procedural()});
+  return render(program,
+                {.width = size, .height = size, .interpret = true, .antialias = procedural()});
 }
 
 TEST(Formulations, OfOneHalfPlaneAreTheSameEdge) {
   for (const char* program :
-       {"c = _q > 0 ? 1 : 0\n", "c = _q < 0 ? 0 : 1\n", "c = 0 <= _q\n", "c = step(0, _q)\n",
-        "c = 0.5 + 0.5 * sign(_q)\n", "c = 1 + floor(_q / 1000)\n", "c = round(0.5 + _q / 1000)\n",
-        "c = select(1000000 * _q > 0, 1, 0)\n", "c = select(0.000001 * _q > 0, 1, 0)\n",
-        "c = smoothstep(0, 0, _q)\n", "c = saturate(1000 * _q + 0.35)\n", "c = _q % 1000 < 500\n",
-        "c = abs(_q - 500) < 500\n", "c = (_q - 1000) ^ 2 < 1000000\n",
-        "c = 0.5 + 0.5 * _q / abs(_q)\n", "c = atan2(_q, -1) > 0\n",
+       {"c = _q > 0 ? 1 : 0\n",
+        "c = _q < 0 ? 0 : 1\n",
+        "c = 0 <= _q\n",
+        "c = step(0, _q)\n",
+        "c = 0.5 + 0.5 * sign(_q)\n",
+        "c = 1 + floor(_q / 1000)\n",
+        "c = round(0.5 + _q / 1000)\n",
+        "c = select(1000000 * _q > 0, 1, 0)\n",
+        "c = select(0.000001 * _q > 0, 1, 0)\n",
+        "c = smoothstep(0, 0, _q)\n",
+        "c = saturate(1000 * _q + 0.35)\n",
+        "c = _q % 1000 < 500\n",
+        "c = abs(_q - 500) < 500\n",
+        "c = (_q - 1000) ^ 2 < 1000000\n",
+        "c = 0.5 + 0.5 * _q / abs(_q)\n",
+        "c = atan2(_q, -1) > 0\n",
         "c = 0.5 + atan2(_q, -1000) / TAU\n",
         "c = 0\nfor i in [1 .. 3]\n    if _q > 0\n        c = 1\n        break\n",
         "function f(q)\n    if q > 0\n        return 1\n    return 0\nc = f(_q)\n",
@@ -57,27 +68,26 @@ TEST(Formulations, OfOneHalfPlaneAreTheSameEdge) {
 
 // The slope of a power is 0 at its edge: f / |f'| is a third of the distance of a cube.
 TEST(Formulations, APowerOfADistanceIsTheSameEdge) {
-  for (const char* program :
-       {"c = _q ^ 3 > 0 ? 1 : 0\n", "c = _q ^ 5 > 0 ? 1 : 0\n"})
+  for (const char* program : {"c = _q ^ 3 > 0 ? 1 : 0\n", "c = _q ^ 5 > 0 ? 1 : 0\n"})
     for (const double degrees : {0.01, 45.0, 77.0, 133.0}) {
       const Picture picture = draw(line(degrees, 8.13, 8.13) + program);
       const double angle = degrees * std::numbers::pi / 180;
       for (int y = 0; y < size; ++y)
         for (int x = 0; x < size; ++x) {
           const double d = (x + 0.5 - 8.13) * std::cos(angle) + (y + 0.5 - 8.13) * std::sin(angle);
-          EXPECT_NEAR(picture.at(x, y), Filter().share(static_cast<float>(d), 1, 0), 1.05 * one_step)
+          EXPECT_NEAR(picture.at(x, y), Filter().share(static_cast<float>(d), 1, 0),
+                      1.05 * one_step)
               << program << degrees << ": " << x << ' ' << y;
         }
     }
 }
 
-// A line of a third of a pixel is broken nowhere, where it passes between samples for many rows too:
-// the exact response is the difference of those of its edges. Samples tell it, 32 of them.
+// A line of a third of a pixel is broken nowhere, where it passes between samples for many rows
+// too: the exact response is the difference of those of its edges. Samples tell it, 32 of them.
 TEST(Formulations, ThinLinesAreWhole) {
-  for (const char* program :
-       {"c = abs(_q - 1 / 6) < 1 / 6\n", "c = fract(_q / 100) < 1 / 300\n",
-        "c = abs(fract((_q - 1 / 6) / 100) - 0.5) > 0.5 - 1 / 600\n",
-        "c = 1 - step(1 / 3, _q % 50)\n"})
+  for (const char* program : {"c = abs(_q - 1 / 6) < 1 / 6\n", "c = fract(_q / 100) < 1 / 300\n",
+                              "c = abs(fract((_q - 1 / 6) / 100) - 0.5) > 0.5 - 1 / 600\n",
+                              "c = 1 - step(1 / 3, _q % 50)\n"})
     for (const double degrees : {0.7, 3.0, 92.0, 359.0}) {
       const Picture picture = draw(line(degrees, 8.2, 8.5) + program);
       const double angle = degrees * std::numbers::pi / 180;

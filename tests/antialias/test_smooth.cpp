@@ -2,6 +2,7 @@
 // parabolas against closed forms, and what must stay as it is.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -170,6 +171,14 @@ TEST(Smooth, OnlyNeighboursOfTheSameWayCount) {
                 1e-5)
         << x;
   }
+}
+
+// A dot of light narrower than a pixel: the weights of corners are below 0.
+TEST(Smooth, NoLightIsTakenAway) {
+  const Picture picture = render("d = [px py] - [8.5 8.5]\nc = 1000 * exp(-40 * dot(d, d))\n",
+                                 {.width = 16, .height = 16, .antialias = procedural()});
+  for (const float value : picture.plane()) EXPECT_GE(value, 0);
+  EXPECT_LT(std::ranges::max(picture.plane()), 900);
 }
 
 TEST(Smooth, WhatIsNoNumberStays) {

@@ -92,7 +92,8 @@ TEST_F(StepsOfAntialiasing, SearchForTheSamePixels) {
         tile.planes = pointers;
         if (has_ends) tile.ids = ids.data();
         if (width % 2 == 1) {
-          for (std::size_t i = 0; i < samples + 64; ++i) bent.push_back(number(0, 1) < 0.9f ? 0 : 1);
+          for (std::size_t i = 0; i < samples + 64; ++i)
+            bent.push_back(number(0, 1) < 0.9f ? 0 : 1);
           tile.bent = bent.data();
         }
         std::vector<std::vector<Pixel>> found;
@@ -211,8 +212,10 @@ TEST_F(StepsOfAntialiasing, SmoothToTheSameBits) {
                   return 0.0f;
               return value(0, step) + value(0, -step) - 2 * value(0, 0);
             };
-            const float more =
-                by.axis * (bend(1) + bend(row)) + by.diagonal * (bend(row - 1) + bend(row + 1));
+            const float straight = by.axis * (bend(1) + bend(row)), most = std::abs(straight);
+            float slanting = by.diagonal * (bend(row - 1) + bend(row + 1));
+            if (std::abs(slanting) > most) slanting = std::copysign(most, slanting);
+            const float more = straight + slanting;
             expected.push_back(std::abs(more) < 3e38f ? value(0, 0) + more : value(0, 0));
           }
         for (const Steps* steps : runnable()) {

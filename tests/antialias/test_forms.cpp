@@ -32,7 +32,7 @@ TEST(Forms, AreThoseOfTheCalculus) {
     EXPECT_EQ(kind_of(expression), kind) << expression;
 }
 
-// y / x and 2 / x lie over the same value.
+// Both quotients are over the same value.
 TEST(Forms, RatiosOverOneValueAddUp) {
   CompiledFront front = lowered("d = x + y\nc = y * (1 / d) + 2 / d\n");
   passes::remove_dead(front.module);

@@ -6,6 +6,8 @@
 //   path       the program with one more output: which way each sample takes; and where it marches
 //              by a loop, one of what that ended with
 //   fine       noise that is finer than a pixel
+//   forms      how each value changes with the place between two edges: linearly, bent (asked by
+//              bent and courses)
 //   bent       edges that may lie between the samples, unseen
 //   derive     the program that gives the edges around a sample (rules, activity, rotate,
 //              edge_state)

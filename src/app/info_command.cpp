@@ -161,10 +161,17 @@ std::vector<GridFacts> examine_volume(const std::string& file) {
   constexpr std::size_t limit = std::size_t{8} << 30;
   volume::Vdb* const vdb = taken(volume::open_vdb());
   std::vector<GridFacts> all;
-  for (const volume::GridInfo& head : taken(vdb->info(file)).grids) {
+  const std::vector<volume::GridInfo> heads = taken(vdb->info(file)).grids;
+  for (auto one = heads.begin(); one != heads.end(); ++one) {
+    const volume::GridInfo& head = *one;
     GridFacts facts{.head = head};
     if (head.components > 0) {
-      const auto read = vdb->read(file, head.name, limit);
+      // Of several grids of one name each has a number.
+      const auto same = [&](const volume::GridInfo& other) { return other.name == head.name; };
+      const bool shared = std::ranges::count_if(heads, same) > 1;
+      const auto number = std::count_if(heads.begin(), one, same);
+      const std::string name = shared ? fmt::format("{}[{}]", head.name, number) : head.name;
+      const auto read = vdb->read(file, name, limit);
       // What is sound and of another kind is only told.
       if (!read && read.error().kind != volume::ErrorKind::damaged) {
         facts.unread = read.error().message;

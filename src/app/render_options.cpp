@@ -248,6 +248,22 @@ std::pair<int, double> parse_slice(const OptionValue& value) {
   return {static_cast<int>(axes.find(value.text[0])), place};
 }
 
+// Refuses a matrix that leaves nothing of the picture's plane; one that makes a line of it may be
+// meant.
+void check_transform(const PlaneTransform& m, const OptionValue& value) {
+  const auto none = [&](std::initializer_list<std::size_t> places) {
+    return std::ranges::all_of(places, [&](std::size_t i) { return m[i] == 0; });
+  };
+  const char* hint = "1, 0, 0, 0, 1, 0 leaves all places where they are";
+  if (none({12, 13, 15}))
+    throw usage_error(
+        fmt::format("{} divides all places by 0: the last row of `{}`", value.origin, value.text),
+        hint);
+  if (none({0, 1, 4, 5, 8, 9, 12, 13}))
+    throw usage_error(
+        fmt::format("{} moves all pixels to one place: `{}`", value.origin, value.text), hint);
+}
+
 // The picture's plane laid into space: seen from the positive side of the axis, with y up where
 // that can be.
 PlaneTransform slice_transform(const std::pair<int, double>& slice,
@@ -286,6 +302,7 @@ RenderOptions render_options(const Session& session) {
       throw usage_error(
           fmt::format("{} takes 6, 9 or 16 numbers, not `{}`", value->origin, value->text),
           "2, 0, 0.5, 0, 2, 0 scales by 2 and moves x by 0.5");
+    check_transform(*options.transform, *value);
   }
   if (const auto value = arguments.value("slice")) {
     options.slice = parse_slice(*value);

@@ -61,7 +61,10 @@ Resolution parse_resolution(const OptionValue& value) {
                                     value.origin, number, largest_side));
     return number;
   };
-  if (parts.empty() || parts.size() > 2) refuse(value, "a size in pixels", "--res 1920x1080");
+  // One side stands for both, unless the other was begun.
+  const bool begun = value.text.find_first_of("xX,") != std::string::npos;
+  if (parts.empty() || parts.size() > 2 || (begun && parts.size() == 1))
+    refuse(value, "a size in pixels", "--res 1920x1080");
   size.width = side(parts.front());
   size.height = side(parts.back());
   return size;

@@ -30,6 +30,17 @@ const char* symbol(BinaryOp op) {
   return "?";
 }
 
+bool holds(BinaryOp comparison, float x, float y) {
+  switch (comparison) {
+    case BinaryOp::less: return x < y;
+    case BinaryOp::less_equal: return x <= y;
+    case BinaryOp::greater: return x > y;
+    case BinaryOp::greater_equal: return x >= y;
+    case BinaryOp::equal: return x == y;
+    default: return x != y;
+  }
+}
+
 }  // namespace
 
 // ---- Making values ------------------------------------------------------------------------------
@@ -275,6 +286,9 @@ Typed Lowering::compare(BinaryOp op, const Typed& left, const Typed& right, cons
     else
       result = emit(op == BinaryOp::equal ? ir::Op::band : ir::Op::bor, {result, here});
   }
+  // Lengths are often compared, and known.
+  if (const auto x = known(a.parts.front()), y = known(b.parts.front()); numbers && x && y)
+    constants_[result] = holds(op, *x, *y) ? 1.0f : 0.0f;
   return truth(result);
 }
 

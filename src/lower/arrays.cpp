@@ -37,7 +37,8 @@ Typed Lowering::array_length(const Typed& array) {
 Typed Lowering::load_element(const Typed& array, ir::Value index, const Span& span, bool checked) {
   const ir::Array& info = builder_->function().arrays[static_cast<std::size_t>(array.array)];
   if (info.components == 0) {
-    error("empty-array", span, "`" + info.name + "` is read before anything is put into it");
+    if (!given_up_.contains(array.array))
+      error("empty-array", span, "`" + info.name + "` is read before anything is put into it");
     return {};
   }
   const int components = info.components;

@@ -15,6 +15,7 @@ Typed Lowering::intrinsic_require(const std::vector<CallArgument>& arguments, co
           "what `require` reports is a text, this is " + describe(arguments[1].value));
     return {};
   }
+  if (known(condition.parts.front()) == 0.0f) call_->unmet = arguments[1].value.text;
   add_check(condition.parts.front(), arguments[1].value.text, program_place(span));
   Typed nothing;
   nothing.kind = Kind::nothing;

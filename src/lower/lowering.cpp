@@ -30,7 +30,13 @@ Blame Lowering::blame(const char* code, const Span& span, std::string message,
   const auto in_library = [&](const Span& place) { return library_texts_.contains(place.file); };
   const Call* call = span.valid() && span.file != main_.file ? call_ : nullptr;
   if (call && in_library(span)) {
-    while (call && in_library(call->call_span)) call = call->caller;
+    // What the library has said it needs tells more than what comes of it.
+    std::string unmet = call->unmet;
+    while (call && in_library(call->call_span)) {
+      call = call->caller;
+      if (call && unmet.empty()) unmet = call->unmet;
+    }
+    if (!unmet.empty()) message = unmet, suggestion.clear();
     if (!call || !call->call_span.valid() || !call->definition)
       return {span, std::move(message), std::move(suggestion)};
     std::string head = "`" + call->definition->name + "` cannot be called here: ";

@@ -38,6 +38,7 @@ struct Call {
   Call* caller = nullptr;
   Span call_span;
   const std::vector<CallArgument>* arguments = nullptr;  // as they were given
+  std::string unmet;  // the text of a require() in it that is known to fail
 };
 
 // Where an error is to be looked for and how it is told.
@@ -213,6 +214,7 @@ class Lowering {
   std::unique_ptr<ir::Builder> builder_;
   std::unique_ptr<BuiltinEmitter> builtins_;
   std::map<ir::Value, float> constants_;  // values known while lowering
+  std::set<std::int32_t> given_up_;       // arrays that miss what errors kept out of them
 
   ModuleScope main_;
   // Imported modules, by name; null while loading or missing.

@@ -229,7 +229,10 @@ void Lowering::assign_index(const AssignStmt& assign, const IndexExpr& index, co
     if (index.indices.size() != 1)
       return error("index-count", span, "an array takes one index");
     // What was to be put in is reported already: the array is silent from here on.
-    const auto give_up = [&] { variables()[name->name] = {}; };
+    const auto give_up = [&] {
+      given_up_.insert(base.array);
+      variables()[name->name] = {};
+    };
     const Typed position = to_number(lower(*index.indices.front()));
     if (position.is_error()) return give_up();
     if (position.kind != Kind::number)

@@ -167,6 +167,14 @@ TEST(Refused, OneMistakeIsOneError) {
   EXPECT_EQ(run_program("radius = 1\na = radus\nb = radus").diagnostics.error_count(), 2u);
 }
 
+// An array that errors kept empty is not blamed for it, one that nobody fills is.
+TEST(Errors, OfWhatGoesIntoAnArrayAreNoneOfTheArray) {
+  const std::string loop = "a = array(4)\nfor i in [1 .. 3]\n  if i > 1\n    a[i] = ";
+  EXPECT_EQ(run_program(loop + "nothing_here\nb = a[1]").diagnostics.error_count(), 1u);
+  const Outcome unfilled = run_program("a = array(4)\nb = a[1]");
+  EXPECT_NE(unfilled.messages().find("empty-array"), std::string::npos) << unfilled.messages();
+}
+
 TEST(Warnings, ALoneComparisonIsQuestionedOnce) {
   EXPECT_EQ(run_program("a = 1\na == 3").diagnostics.all().size(), 1u);
 }

@@ -248,6 +248,33 @@ TEST_F(Bake, InfoTellsOfGrids) {
   EXPECT_TRUE(contains(told.err, "damaged")) << told.err;
 }
 
+// Each of the grids that share a name is told of with its own values.
+TEST_F(Bake, InfoTellsGridsOfOneNameApart) {
+  const auto vdb = volume::open_vdb();
+  ASSERT_TRUE(vdb);
+  const volume::GridSpec spec{.name = "density"};
+  const auto writer = (*vdb)->writer({spec, spec, {.name = "heat"}}, {});
+  std::array<std::uint64_t, 8> active{};
+  active.fill(~std::uint64_t{0});
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::array<float, volume::block_voxels> voxels{};
+    voxels.front() = 0.25f * static_cast<float>(k + 1);
+    const float* const plane = voxels.data();
+    writer->add(k, {0, 0, 0}, {&plane, 1}, active);
+  }
+  ASSERT_TRUE(
+      writer->write((folder() / "two.vdb").string(), {}, "00000000-0000-0000-0000-000000000001"));
+  const Ended told = pse({"info", "two.vdb"});
+  EXPECT_EQ(told.status, 0) << told.err;
+  std::size_t from = 0;
+  for (const char* part : {"density: float", "values  0 to 0.25", "density: float",
+                           "values  0 to 0.5", "heat: float", "values  0 to 0.75"}) {
+    from = told.out.find(part, from);
+    ASSERT_NE(from, std::string::npos) << part << "\n" << told.out;
+    ++from;
+  }
+}
+
 TEST_F(Bake, SequencesResumeAndRefuseOneName) {
   file("a.pse", "density = max(0, 0.5 + 0.25 * frame - length(point))\n");
   ASSERT_EQ(pse({"bake", "a.pse", "-f", "1-3", "-o", "a.%04d.vdb", "--res", "16"}).status, 0);

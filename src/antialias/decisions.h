@@ -33,8 +33,8 @@ struct Decisions {
   // number.
   std::vector<bool> creases;
   std::vector<bool> dithered;  // what depends on chance (dither.h): none of these is an edge
-  // What expectations alone need (ir/expectations.h), and what says where a prepass has found matter:
-  // likewise none.
+  // What expectations alone need (ir/expectations.h), and what says where a prepass has found
+  // matter: likewise none.
   std::vector<bool> expected;
   std::vector<bool> searched;  // the conditions of loops that search
   std::vector<bool> ends;      // the results of these that are used

@@ -5,8 +5,9 @@
 //
 // A loop that searches, a ray's march above all, turns differently often at every pixel and yet
 // ends in the same place: its turns are no ways of their own. Its last turn tells what it has met,
-// and what it ends with jumps where it meets something else. (The 2002 chapter has no loops.) A last
-// turn that changes nothing has met nothing: so it does not matter where a prepass ends a march.
+// and what it ends with jumps where it meets something else. (The 2002 chapter has no loops.) A
+// last turn that changes nothing has met nothing: so it does not matter where a prepass ends a
+// march.
 #include "antialias/path.h"
 
 #include <array>

@@ -164,8 +164,8 @@ TileSource InputImages::load(const ir::Module& module, const ImagePlane& picture
           if (module.inputs[i].rate != ir::Rate::sample || module.inputs[i].name != component)
             continue;
           const auto known = std::ranges::find(channels, channel);
-          feeds.push_back({i, static_cast<std::size_t>(known - channels.begin()),
-                           outside_of(component)});
+          feeds.push_back(
+              {i, static_cast<std::size_t>(known - channels.begin()), outside_of(component)});
           if (known == channels.end()) channels.push_back(channel);
         }
       }

@@ -132,7 +132,10 @@ Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
   const std::vector<Value> seams = add_seams(module);
   // A picture is the same whatever part of a ray the prepass leaves out, and so are its edges.
   expected.resize(module.main().values.size());
-  find_guides(module, module.main().body, expected);
+  std::vector<bool> guides(expected.size());
+  find_guides(module, module.main().body, guides);
+  for (std::size_t value = 0; value < guides.size(); ++value)
+    expected[value] = expected[value] || guides[value];
   passes::assign_rates(module);
   const Function& main = module.main();
   Decisions found;

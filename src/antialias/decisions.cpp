@@ -131,11 +131,8 @@ Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
   std::vector<bool> expected = find_expected(module);
   const std::vector<Value> seams = add_seams(module);
   // A picture is the same whatever part of a ray the prepass leaves out, and so are its edges.
-  expected.resize(module.main().values.size());
-  std::vector<bool> guides(expected.size());
+  std::vector<bool> guides(module.main().values.size());
   find_guides(module, module.main().body, guides);
-  for (std::size_t value = 0; value < guides.size(); ++value)
-    expected[value] = expected[value] || guides[value];
   passes::assign_rates(module);
   const Function& main = module.main();
   Decisions found;
@@ -151,7 +148,7 @@ Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
   const auto differs = [&](const Instruction& in) {
     const Value result = in.result();
     return main.values[result].rate == ir::Rate::sample && !found.dithered[result] &&
-           !found.expected[result];
+           !found.expected[result] && !guides[result];
   };
   for_each(main.body, found, [&](const Instruction& in, bool) {
     const Cut cut = cut_of(in.op);

@@ -33,9 +33,7 @@ struct Decisions {
   // number.
   std::vector<bool> creases;
   std::vector<bool> dithered;  // what depends on chance (dither.h): none of these is an edge
-  // What expectations alone need (ir/expectations.h), and what says where a prepass has found
-  // matter: likewise none.
-  std::vector<bool> expected;
+  std::vector<bool> expected;  // what expectations alone need (ir/expectations.h): likewise none
   std::vector<bool> searched;  // the conditions of loops that search
   std::vector<bool> ends;      // the results of these that are used
   std::vector<bool> noises;    // calls of noise that may be finer than a pixel (fine.h)

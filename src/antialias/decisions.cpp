@@ -74,6 +74,29 @@ std::vector<bool> find_expected(const ir::Module& module) {
   return found;
 }
 
+// Marks what says where on a ray a prepass has found matter: what is computed from its inputs, but
+// not what loops do there.
+void find_guides(const ir::Module& module, const Region& region, std::vector<bool>& found) {
+  for (const Instruction& in : region.body) {
+    bool guides = false;
+    if (in.op == Op::input) {
+      const std::string& name = module.inputs[static_cast<std::size_t>(in.imm)].name;
+      guides = name == "prepass.near" || name == "prepass.far";
+    }
+    // What a condition chooses is no guide by that.
+    const std::size_t chooses = in.op == Op::if_ || in.op == Op::select ? 1 : 0;
+    for (std::size_t k = chooses; k < in.operands.size(); ++k)
+      guides = guides || found[in.operands[k]];
+    for (const Region& inner : in.regions) find_guides(module, inner, found);
+    if (in.op == Op::loop) continue;
+    for (std::size_t k = 0; k < in.results.size(); ++k) {
+      found[in.results[k]] = guides;
+      for (const Region& inner : in.regions)
+        found[in.results[k]] = found[in.results[k]] || found[inner.yields[k]];
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<bool> defined_values(const Function& function) {
@@ -107,6 +130,9 @@ Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
   const std::size_t own = module.main().values.size();
   std::vector<bool> expected = find_expected(module);
   const std::vector<Value> seams = add_seams(module);
+  // A picture is the same whatever part of a ray the prepass leaves out, and so are its edges.
+  std::vector<bool> guides(module.main().values.size());
+  find_guides(module, module.main().body, guides);
   passes::assign_rates(module);
   const Function& main = module.main();
   Decisions found;
@@ -122,7 +148,7 @@ Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
   const auto differs = [&](const Instruction& in) {
     const Value result = in.result();
     return main.values[result].rate == ir::Rate::sample && !found.dithered[result] &&
-           !found.expected[result];
+           !found.expected[result] && !guides[result];
   };
   for_each(main.body, found, [&](const Instruction& in, bool) {
     const Cut cut = cut_of(in.op);

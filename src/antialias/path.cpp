@@ -5,7 +5,9 @@
 //
 // A loop that searches, a ray's march above all, turns differently often at every pixel and yet
 // ends in the same place: its turns are no ways of their own. Its last turn tells what it has met,
-// and what it ends with jumps where it meets something else. (The 2002 chapter has no loops.)
+// and what it ends with jumps where it meets something else. (The 2002 chapter has no loops.) A
+// last turn that changes nothing has met nothing: so it does not matter where a prepass ends a
+// march.
 #include "antialias/path.h"
 
 #include <array>
@@ -178,10 +180,34 @@ class Paths {
 
   // A loop that searches: every turn's path begins anew.
   Value search(Instruction& in, Value before) {
-    const Value after = walk(in.regions[1], {before, no_value, no_value, no_value}).path;
+    Region& body = in.regions[1];
+    const Value after = walk(body, {before, no_value, no_value, no_value}).path;
     if (after == before) return before;
+    const Emit emit(function_, body.body);
+    const Value met = emit.choose(changes(emit, in), after, before);
     carry(in, ir::Type::i32);
-    return finish(in, before, after);
+    return finish(in, before, met);
+  }
+
+  // Whether a turn of a search changes anything that it may end with, or that ends it.
+  Value changes(const Emit& emit, const Instruction& loop) const {
+    const Region& body = loop.regions[1];
+    Value any = emit(Op::const_bool, {}, 0);
+    for (std::size_t k = 0; k < body.params.size(); ++k) {
+      const Value from = body.params[k], to = body.yields[k];
+      if (from == to) continue;
+      const ir::Type type = function_.values[to].type;
+      const Value end = loop.results[k];
+      const bool is_end = end < decisions_.ends.size() && decisions_.ends[end];
+      const bool is_flag = type == ir::Type::boolean &&
+                           !(end < decisions_.expected.size() && decisions_.expected[end]);
+      if (!is_end && !is_flag) continue;
+      const Op differ = type == ir::Type::f32   ? Op::fne
+                        : type == ir::Type::i32 ? Op::ine
+                                                : Op::bxor;
+      any = emit(Op::bor, {any, emit(differ, {from, to})});
+    }
+    return any;
   }
 
   // The sum with what a search ends with.

@@ -6,10 +6,13 @@
 
 #include <algorithm>
 
+#include "app/span_places.h"
 #include "image/sequence.h"
 
 namespace pse::app {
 namespace {
+
+constexpr std::string_view prepass_near = "prepass.near", prepass_far = "prepass.far";
 
 Failure input_failure(const image::ImageError& error) { return {Exit::input, error.message}; }
 
@@ -19,7 +22,13 @@ std::string stream_prefix(const std::string& name) { return name.empty() ? "" : 
 struct Feed {
   std::size_t input;
   std::size_t plane;
+  float outside = 0;  // where the image has no pixels
 };
+
+// Without a pixel of a prepass matter may be anywhere.
+float outside_of(const std::string& component) {
+  return component == prepass_near ? anywhere_near : component == prepass_far ? anywhere_far : 0;
+}
 
 // An image's pixels on their way into tiles.
 struct Stream {
@@ -28,7 +37,7 @@ struct Stream {
   image::Window display;
 };
 
-// Copies the parts of an image's planes that lie under the tile; 0 where it has no pixels.
+// Copies the parts of an image's planes that lie under the tile.
 void fill(const Stream& stream, const TileView& tile) {
   const image::Window& data = stream.bands->window();
   const int origin_x = stream.display.x0, origin_y = stream.display.y0;
@@ -38,7 +47,7 @@ void fill(const Stream& stream, const TileView& tile) {
   const int begin = std::clamp(data.x0, x0, x1), end = std::clamp(data.x1, begin, x1);
   for (const Feed& feed : stream.feeds) {
     float* to = tile.planes[feed.input];
-    std::fill_n(to, tile.count, 0.0f);
+    std::fill_n(to, tile.count, feed.outside);
     for (const auto& band : *bands)
       for (int y = std::max(band->y0, tile.rect.y0 + origin_y);
            y < std::min(band->y1, tile.rect.y1 + origin_y) && begin < end; ++y)
@@ -155,7 +164,8 @@ TileSource InputImages::load(const ir::Module& module, const ImagePlane& picture
           if (module.inputs[i].rate != ir::Rate::sample || module.inputs[i].name != component)
             continue;
           const auto known = std::ranges::find(channels, channel);
-          feeds.push_back({i, static_cast<std::size_t>(known - channels.begin())});
+          feeds.push_back(
+              {i, static_cast<std::size_t>(known - channels.begin()), outside_of(component)});
           if (known == channels.end()) channels.push_back(channel);
         }
       }
@@ -177,6 +187,35 @@ TileSource InputImages::load(const ir::Module& module, const ImagePlane& picture
     tables(tile);
     for (const Stream& stream : *streams) fill(stream, tile);
   };
+}
+
+bool InputImages::is_span(const StreamName& name) {
+  return name.components == 1 && (name.name == prepass_near || name.name == prepass_far);
+}
+
+std::unique_ptr<SampleSource> InputImages::anywhere(const ir::Module& module,
+                                                    std::unique_ptr<SampleSource> places) const {
+  for (const Open& image : images_) {
+    if (!image.bands) continue;
+    const image::Window& display = image.reader->spec().display;
+    StoredSpans spans{image.bands, display.x0, display.y0};
+    const auto find = [&](std::string_view component,
+                          const image::Layer& layer) -> std::optional<StoredSpans::Bound> {
+      if (layer.components() != 1 || stream_prefix(image.name) + layer.name != component)
+        return std::nullopt;
+      const auto channel = std::ranges::find(image.channels, layer.channels[0]);
+      for (std::size_t i = 0; i < module.inputs.size() && channel != image.channels.end(); ++i)
+        if (module.inputs[i].rate == ir::Rate::sample && module.inputs[i].name == component)
+          return StoredSpans::Bound{i, static_cast<std::size_t>(channel - image.channels.begin())};
+      return std::nullopt;
+    };
+    for (const image::Layer& layer : image.layers) {
+      if (const auto near = find(prepass_near, layer)) spans.near = near;
+      if (const auto far = find(prepass_far, layer)) spans.far = far;
+    }
+    if (spans.near || spans.far) places = with_spans(std::move(places), std::move(spans));
+  }
+  return places;
 }
 
 }  // namespace pse::app

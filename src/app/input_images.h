@@ -11,6 +11,7 @@
 #include "image/reader.h"
 #include "image/row_bands.h"
 #include "stream/executor.h"
+#include "stream/sample_source.h"
 
 namespace pse::app {
 
@@ -46,6 +47,13 @@ class InputImages {
   // long as no other frame is opened. `picture_plane` is the picture, for inserted tables. Both
   // throw Failure (input).
   TileSource load(const ir::Module& module, const ImagePlane& picture_plane);
+
+  // Whether a name is what a prepass has found, which is known between pixels too (span_places.h).
+  static bool is_span(const StreamName& name);
+  // `places` with what a prepass has found, where load() has read it; as long as no other frame is
+  // opened. fill() throws Failure (input).
+  std::unique_ptr<SampleSource> anywhere(const ir::Module& module,
+                                         std::unique_ptr<SampleSource> places) const;
 
  private:
   struct Open {

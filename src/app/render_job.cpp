@@ -254,7 +254,7 @@ RunResult RenderJob::compute(const TileSource& source, FrameWriter* writer) {
       [this](const Program& program) { return frame_state(program); },
       [this](const ir::Module& module) {
         return surfaces_ != nullptr ? surfaces_->samples(module, plane_)
-                                    : image_plane_samples(module, plane_);
+                                    : images_.anywhere(module, image_plane_samples(module, plane_));
       },
       reads_stored() ? std::optional(Rect{0, 0, plane_.width, plane_.height}) : std::nullopt};
   return antialias::execute(programs_, host, antialias(), source, sink,
@@ -268,11 +268,12 @@ RunResult RenderJob::compute(const TileSource& source, FrameWriter* writer) {
                             status_, stats_.antialias);
 }
 
-// Pixels of images are known at their centres only.
+// Pixels of images are known at their centres only, but for what a prepass has found.
 bool RenderJob::reads_stored() const {
   if (surfaces_ != nullptr && surfaces_->is_stored()) return true;
   return std::ranges::any_of(images_.names(), [&](const StreamName& name) {
-    return std::ranges::find(program_->reads, name.name) != program_->reads.end();
+    return !(surfaces_ == nullptr && InputImages::is_span(name)) &&
+           std::ranges::find(program_->reads, name.name) != program_->reads.end();
   });
 }
 

@@ -3,6 +3,7 @@
 // the place of Noise(k * x) moves by k / 16, and noise is fine from k = 16 sqrt(0.2) = 7.16 on.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "antialias/smooth.h"
@@ -59,8 +60,10 @@ TEST(Fine, WhereTheSlopeSaysSo) {
   const auto smooth = [](const Picture& of, int x, int y) {
     const Smoothing by = smoothing_of(Filter());
     const auto both = [&](int dx, int dy) { return of.at(x + dx, y + dy) + of.at(x - dx, y - dy); };
-    return of.at(x, y) + by.axis * (both(1, 0) + both(0, 1) - 4 * of.at(x, y)) +
-           by.diagonal * (both(1, 1) + both(1, -1) - 4 * of.at(x, y));
+    const float straight = by.axis * (both(1, 0) + both(0, 1) - 4 * of.at(x, y)),
+                most = std::abs(straight),
+                slanting = by.diagonal * (both(1, 1) + both(1, -1) - 4 * of.at(x, y));
+    return of.at(x, y) + straight + std::clamp(slanting, -most, most);
   };
   const Picture plainly = render(program, {.antialias = plain()});
   const Picture ours = render(program, {.antialias = procedural()});

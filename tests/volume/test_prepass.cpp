@@ -210,17 +210,27 @@ TEST_P(PrepassAgainst, GivesTheSamePictureWithCleanEdges) {
 
 // Marches without chance are decisions of their own, in loops that end where the span does.
 TEST_F(Prepass, TheEndOfASpanIsNoEdge) {
-  for (const std::string matter :
-       {"    return abs(dot(sin(5 * p), cos(5 * [p.y p.z p.x]))) < 0.06 and norm(p) < 1.3 ? 1 : 0\n",
-        "    return p.x * p.x + p.z * p.z < 0.04 + 0.03 * turbulence(3 * p) ? 0.3 : 0\n"}) {
-    file("a.pse", "function density(p)\n" + matter +
-                      "function light(p, d)\n    return [1 0.5 p.z]\n"
-                      "color = raymarch(density, light, [x y 2], [0 0 -1], 0.5, 3.5, 0.02)\n");
-    const std::vector<std::string> options = {"--res", "64x64", "--antialias", "procedural"};
+  struct Scene {
+    const char *matter, *direction, *size;
+  };
+  for (const auto& [matter, direction, size] :
+       {Scene{"abs(dot(sin(5 * p), cos(5 * [p.y p.z p.x]))) < 0.06 and norm(p) < 1.3 ? 1 : 0",
+              "[0 0 -1]", "64x64"},
+        Scene{"p.x * p.x + p.z * p.z < 0.04 + 0.03 * turbulence(3 * p) ? 0.3 : 0", "[0 0 -1]",
+              "64x64"},
+        // Told from edges by what the march's last turn changes alone.
+        Scene{"saturate(1.5 - 6 * abs(dot(sin(9 * p), cos(9 * [p.y p.z p.x])))) * "
+              "saturate(20 - 20 * norm(p))",
+              "[0.1 0 -1]", "96x96"}}) {
+    file("a.pse", std::string("function density(p)\n    return ") + matter +
+                      "\nfunction light(p, d)\n    return [1 0.5 p.z]\n" +
+                      "color = raymarch(density, light, [x y 2], " + direction +
+                      ", 0.5, 3.5, 0.02)\n");
+    const std::vector<std::string> options = {"--res", size, "--antialias", "procedural"};
     const image::Image whole = render(options),
-                       fast = render({"--res", "64x64", "--antialias", "procedural", "--prepass", "4"});
+                       fast = render({"--res", size, "--antialias", "procedural", "--prepass", "4"});
     EXPECT_EQ(whole.planes, fast.planes) << matter;
-    EXPECT_NE(whole.planes, render({"--res", "64x64"}).planes);
+    EXPECT_NE(whole.planes, render({"--res", size}).planes);
   }
 }
 

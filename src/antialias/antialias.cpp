@@ -164,15 +164,14 @@ class Execution {
   // The output that tells where noise is fine; nowhere if there is none, or if it is the same in
   // all of the picture and not fine.
   std::size_t find_fine(const PlaceRunner& runner) const {
-    const ir::Module& module = programs_.quiet->module();
-    if (fine_ == nowhere) return nowhere;
-    const ir::Value value = module.main().body.yields[fine_];
-    if (module.main().values[value].rate == ir::Rate::sample) return fine_;
+    if (fine_ == nowhere || programs_.has_untold_noise) return fine_;
+    const ir::Function& main = programs_.quiet->module().main();
+    if (main.values[main.body.yields[fine_]].rate == ir::Rate::sample) return fine_;
     Work work;
     work.places.resize(1);
     work.places.x[0] = options_.window.x0 + 0.5, work.places.y[0] = options_.window.y0 + 0.5;
     RunStatus unchecked{.outer = &status_};
-    return runner.run(work, unchecked)[fine_][0] > most_move_squared ? fine_ : nowhere;
+    return runner.run(work, unchecked)[fine_][0] > least_move_squared ? fine_ : nowhere;
   }
 
   // The program with its checks on the tile alone: what is outside of the picture cannot fail.

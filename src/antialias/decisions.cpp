@@ -172,7 +172,8 @@ Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
   });
   find_searches(main, found);
   found.noises = find_noise(module, found, changes);
-  found.any_noise = std::ranges::find(found.noises, true) != found.noises.end();
+  found.any_noise =
+      found.noises.others || std::ranges::find(found.noises.told, true) != found.noises.told.end();
   found.bent = find_bent(module, found, changes);
   found.any_bent = std::ranges::find(found.bent, true) != found.bent.end();
   return found;

@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "antialias/fine.h"
 #include "ir/module.h"
 #include "stream/sample_source.h"
 
@@ -36,7 +37,7 @@ struct Decisions {
   std::vector<bool> expected;  // what expectations alone need (ir/expectations.h): likewise none
   std::vector<bool> searched;  // the conditions of loops that search
   std::vector<bool> ends;      // the results of these that are used
-  std::vector<bool> noises;    // calls of noise that may be finer than a pixel (fine.h)
+  Noises noises;               // what may be finer than a pixel (fine.h)
   std::vector<bool> bent;      // jumps that no pixel's middle may show (bent.h)
   bool any = false;            // whether there is a fork
   bool any_jump = false;

@@ -2,6 +2,7 @@
 #include "antialias/fine.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "antialias/decisions.h"
 #include "passes/slice.h"
@@ -18,16 +19,21 @@ using ir::Region;
 using ir::Value;
 using passes::Slice;
 
-class Noises {
+// Noise is mostly made of waves a little longer than a lattice cell.
+constexpr float cells_per_period = 1.3f;
+
+bool is_wave(const std::string& name) { return name == "sin" || name == "cos"; }
+
+class Search {
  public:
-  Noises(const ir::Module& module, const Decisions& decisions, const InputChanges& changes)
+  Search(const ir::Module& module, const Decisions& decisions, const InputChanges& changes)
       : module_(module),
         main_(module.main()),
         decisions_(decisions),
         changes_(changes),
-        found_(main_.values.size()) {}
+        found_{std::vector<bool>(main_.values.size())} {}
 
-  std::vector<bool> find(const std::vector<bool>* wanted = nullptr) && {
+  Noises find(const std::vector<bool>* wanted = nullptr) && {
     wanted_ = wanted;
     walk(main_.body);
     return std::move(found_);
@@ -36,8 +42,11 @@ class Noises {
  private:
   void walk(const Region& region) {
     for (const Instruction& in : region.body) {
-      if (is_wanted(in)) found_[in.results[0]] = is_cheap(in);
-      if (decisions_.is_dither(in) || (in.op == Op::loop && !has_known_turns(in))) continue;
+      if (is_wanted(in) && differs(in)) {
+        found_.told[in.results[0]] = is_cheap(in);
+        found_.others = found_.others || !found_.told[in.results[0]];
+      }
+      if (decisions_.is_dither(in) || (in.op == Op::loop && turns_differ(in))) continue;
       for (const Region& inner : in.regions) walk(inner);
     }
   }
@@ -48,23 +57,18 @@ class Noises {
   }
 
   bool is_noise(const Instruction& call) const {
-    return module_.functions[static_cast<std::size_t>(call.imm)].name.find("noise") !=
-           std::string::npos;
+    const std::string& name = module_.functions[static_cast<std::size_t>(call.imm)].name;
+    return name.find("noise") != std::string::npos || is_wave(name);
   }
 
-  // Whether the loop turns equally often everywhere, however large a pixel is.
-  bool has_known_turns(const Instruction& loop) const {
-    const Value by = loop.regions[0].yields[0];
-    if (main_.values[by].rate == ir::Rate::sample) return false;
-    Slice slice(main_);
-    slice.need(by);
-    slice.run();
-    return none_of(main_.body, slice, [&](const Instruction& in) {
-      if (in.op == Op::slope) return true;
-      if (in.op != Op::input) return false;
-      const std::string& name = input(in).name;
-      return name == "pixelsize" || name == "pixel_freq";
-    });
+  bool turns_differ(const Instruction& loop) const {
+    return main_.values[loop.regions[0].yields[0]].rate == ir::Rate::sample;
+  }
+
+  bool differs(const Instruction& in) const {
+    const Value result = in.results[0];
+    return main_.values[result].rate == ir::Rate::sample &&
+           !(result < decisions_.dithered.size() && decisions_.dithered[result]);
   }
 
   // Whether the slopes of all that the call gets are found with little work.
@@ -83,7 +87,7 @@ class Noises {
                  return !passes::has_partials(
                      module_.functions[static_cast<std::size_t>(in.imm)].name);
                case Op::loop:
-                 return main_.values[in.regions[0].yields[0]].rate == ir::Rate::sample;
+                 return turns_differ(in);
                case Op::input:
                  return is_place(in) && moves_unevenly(input(in).name);
                default:
@@ -115,23 +119,23 @@ class Noises {
   const Function& main_;
   const Decisions& decisions_;
   const InputChanges& changes_;
-  std::vector<bool> found_;
+  Noises found_;
   const std::vector<bool>* wanted_ = nullptr;  // null: noise
 };
 
 }  // namespace
 
-std::vector<bool> find_noise(const ir::Module& module, const Decisions& decisions,
+Noises find_noise(const ir::Module& module, const Decisions& decisions,
                              const InputChanges& changes) {
-  return Noises(module, decisions, changes).find();
+  return Search(module, decisions, changes).find();
 }
 
 std::vector<bool> find_cheap(const ir::Module& module, const Decisions& decisions,
                              const InputChanges& changes, const std::vector<bool>& wanted) {
-  return Noises(module, decisions, changes).find(&wanted);
+  return Search(module, decisions, changes).find(&wanted).told;
 }
 
-Value move_squared(const passes::Emit& emit, const Instruction& call) {
+Value move_squared(const passes::Emit& emit, const ir::Module& module, const Instruction& call) {
   Value along[2];
   for (std::int32_t k = 0; k < 2; ++k) {
     Value sum = emit.number(0);
@@ -143,7 +147,10 @@ Value move_squared(const passes::Emit& emit, const Instruction& call) {
     }
     along[k] = sum;
   }
-  return emit(Op::fmax, {along[0], along[1]});
+  const Value farthest = emit(Op::fmax, {along[0], along[1]});
+  if (!is_wave(module.functions[static_cast<std::size_t>(call.imm)].name)) return farthest;
+  constexpr float cells = cells_per_period / (2 * std::numbers::pi_v<float>);
+  return emit.mul(farthest, emit.number(cells * cells));
 }
 
 }  // namespace pse::antialias

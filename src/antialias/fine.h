@@ -14,12 +14,18 @@ namespace pse::antialias {
 
 struct Decisions;
 
-// By the first result of calls in the main function: noise that may be fine and whose fineness is
-// cheap to tell. That leaves out what is asked at places that are made of other noise, or that a
-// loop finds whose number of turns differs from sample to sample, or that do not come from a flat
-// picture; and noise in loops which the pixel's size ends, since that is what such loops are for.
-// Values have their rates.
-std::vector<bool> find_noise(const ir::Module& module, const Decisions& decisions,
+// Calls of the main function whose results may change within a pixel: noise and waves.
+struct Noises {
+  // By their first result: those whose fineness is cheap to tell.
+  std::vector<bool> told;
+  // Whether there are others. Those in loops whose number of turns differs from sample to sample,
+  // as that of rays does, are left as they are.
+  bool others = false;
+};
+
+// Fineness is dear to tell of what is asked at places that are made of other noise, or that do not
+// come from a flat picture. Values have their rates.
+Noises find_noise(const ir::Module& module, const Decisions& decisions,
                              const InputChanges& changes);
 
 // Likewise of the instructions with one result that are wanted, those whose slopes are cheap to
@@ -28,10 +34,17 @@ std::vector<bool> find_cheap(const ir::Module& module, const Decisions& decision
                              const InputChanges& changes, const std::vector<bool>& wanted);
 
 // How far the place of a call of noise moves from pixel to pixel, squared, in lattice cells: along
-// the rows or the columns, whichever is more. Asks by `slope` instructions.
-ir::Value move_squared(const passes::Emit& emit, const ir::Instruction& call);
+// the rows or the columns, whichever is more. A wave's period counts as 1.3 cells. Asks by `slope`
+// instructions.
+ir::Value move_squared(const passes::Emit& emit, const ir::Module& module,
+                       const ir::Instruction& call);
 
-// Noise whose place moves by more is fine.
-inline constexpr float most_move_squared = 0.2f;
+// What moves by less is told well enough by its neighbours (smooth.h). What moves by more than the
+// second is fine: samples in pixels' middles tell nothing of each other. Above the third, samples
+// half a pixel apart do not either (half_grid.h).
+inline constexpr float least_move_squared = 0.09f, most_move_squared = 0.2f,
+                       most_half_move_squared = 0.75f;
+// Where it is not told: what neighbours deviate by decides then.
+inline constexpr float untold_move_squared = 0.15f;
 
 }  // namespace pse::antialias

@@ -13,8 +13,12 @@ namespace {
 
 // What deviates by less from its mean is left to its neighbours (smooth.h); three samples in a row,
 // of which neither tells of the others, bend by 6 times its square.
-constexpr float least_deviation = 0.0225f;
-constexpr float most_bend_squared = 6 * least_deviation * least_deviation;
+constexpr float least_deviation = 0.01f;
+constexpr float least_bend_squared = 6 * least_deviation * least_deviation;
+// What deviates by more is grainy.
+constexpr float most_deviation = 0.0225f;
+constexpr float more_squared =
+    (most_deviation / least_deviation) * (most_deviation / least_deviation);
 
 template <std::size_t lanes>
 std::size_t find_fine(const Tile& tile, Pixel* found) {
@@ -26,7 +30,8 @@ std::size_t find_fine(const Tile& tile, Pixel* found) {
   for (int y = tile.rect.y0; y < tile.rect.y1; ++y)
     for (std::ptrdiff_t i = 0; i < width; i += at_once) {
       const std::size_t at = tile.at(tile.rect.x0 + static_cast<int>(i), y);
-      Answers fine = load<V>(tile.fine + at) > most_move_squared;
+      const V move = load<V>(tile.fine + at);
+      Answers fine = move > least_move_squared;
       if (!any(fine)) continue;
       const float* path = tile.path() + at;
       const Answers way = load<Answers>(path);
@@ -41,13 +46,21 @@ std::size_t find_fine(const Tile& tile, Pixel* found) {
                         bend);
         }
         bends += choose(alike, bend * bend, V{});
-        most += choose(alike, V{} + most_bend_squared, V{});
+        most += choose(alike, V{} + least_bend_squared, V{});
       }
       fine &= bends > most;
+      const Answers grainy = (move > most_move_squared) & (bends > more_squared * most);
+      const std::uint32_t grain = mask_of(grainy);
+      const std::uint32_t wild = mask_of(grainy & (move > most_half_move_squared));
       std::uint32_t wanted = mask_of(fine);
       if (width - i < at_once) wanted &= (1u << (width - i)) - 1;
-      for (; wanted != 0; wanted &= wanted - 1)
-        *next++ = {.x = tile.rect.x0 + static_cast<int>(i) + __builtin_ctz(wanted), .y = y};
+      for (; wanted != 0; wanted &= wanted - 1) {
+        const int k = __builtin_ctz(wanted);
+        *next++ = {.x = tile.rect.x0 + static_cast<int>(i) + k,
+                   .y = y,
+                   .grainy = (grain >> k & 1) != 0,
+                   .wild = (wild >> k & 1) != 0};
+      }
     }
   return static_cast<std::size_t>(next - found);
 }

@@ -39,8 +39,8 @@ struct Way {
 
 class Paths {
  public:
-  Paths(Function& function, const Decisions& decisions, float reach)
-      : function_(function), decisions_(decisions), reach_(reach) {}
+  Paths(ir::Module& module, const Decisions& decisions, float reach)
+      : module_(module), function_(module.main()), decisions_(decisions), reach_(reach) {}
 
   bool has_searches() const { return has_searches_; }
 
@@ -93,11 +93,11 @@ class Paths {
   }
 
   bool is_noise(const Instruction& in) const {
-    return in.op == Op::call && in.results[0] < decisions_.noises.size() &&
-           decisions_.noises[in.results[0]];
+    const std::vector<bool>& told = decisions_.noises.told;
+    return in.op == Op::call && in.results[0] < told.size() && told[in.results[0]];
   }
-  static Value with_move(const Emit& emit, const Instruction& call, Value farthest) {
-    return emit(Op::fmax, {farthest, move_squared(emit, call)});
+  Value with_move(const Emit& emit, const Instruction& call, Value farthest) const {
+    return emit(Op::fmax, {farthest, move_squared(emit, module_, call)});
   }
 
   Value with_edge(const Emit& emit, const Instruction& decision, Value before) const {
@@ -236,6 +236,7 @@ class Paths {
     return emit.choose(emit.less(v, emit.number(0)), emit(Op::fneg, {size}), size);
   }
 
+  const ir::Module& module_;
   Function& function_;
   const Decisions& decisions_;
   float reach_;
@@ -270,10 +271,11 @@ void add_path(ir::Module& module, const Decisions& decisions, float reach) {
   Function& main = module.main();
   std::vector<Instruction> start;
   const Emit first(main, start);
-  const Value still = decisions.any_noise ? first.number(0) : no_value;
+  const float untold = decisions.noises.others ? untold_move_squared : 0;
+  const Value still = decisions.any_noise ? first.number(untold) : no_value;
   const Value straight = decisions.any_bent ? first.number(0) : no_value;
   const Way none{first.integer(0), first.number(0), still, straight};
-  Paths paths(main, decisions, reach);
+  Paths paths(module, decisions, reach);
   const Way way = paths.walk(main.body, none);
   main.body.body.insert(main.body.body.begin(), std::make_move_iterator(start.begin()),
                         std::make_move_iterator(start.end()));

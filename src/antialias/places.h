@@ -6,6 +6,7 @@
 
 #include "antialias/corner.h"
 #include "antialias/crossings.h"
+#include "antialias/half_grid.h"
 #include "antialias/tile.h"
 #include "stream/planes.h"
 #include "stream/program.h"
@@ -60,7 +61,9 @@ struct Work {
   std::vector<Bent> bent;
   std::vector<Pixel> between;  // between the bends of a steep ramp
   std::vector<Pixel> fine;     // memory of find_fine_pixels()
-  std::vector<Pixel> noisy;    // fine, and no edge is near
+  std::vector<Pixel> noisy;    // wild, and no edge is near
+  std::vector<Pixel> halved;   // likewise fine, but not wild
+  HalfGrid halves;             // the samples of these
   Places places;    // where the next run is to be
   Results results;  // of the last run
   Scratch scratch;

@@ -55,6 +55,7 @@ std::expected<Programs, std::string> compile_programs(CompiledFront front,
   programs.courses = find_courses(copy.module, decisions);
   if (!decisions.any && !decisions.any_noise) return finish(std::move(front));
   programs.has_paths = true;
+  programs.has_untold_noise = decisions.noises.others;
   if (!decisions.any) {
     programs.has_only_noise = true;
     add_path(copy.module, decisions);

@@ -40,6 +40,8 @@ struct Programs {
   bool has_paths = false;
   // Paths are there for noise that may be finer than a pixel (fine.h), and for nothing else.
   bool has_only_noise = false;
+  // How fine some of it is is not told (Noises::others).
+  bool has_untold_noise = false;
 };
 
 // What becomes of a program's expectations (ir/expectations.h): reported by the host, which binds

@@ -214,19 +214,28 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
   Refined result({}, outputs_);
   if (found.empty() && fine.empty()) return result;
   counts.filtered += static_cast<std::int64_t>(found.size() + fine.size());
-  work.unclear.clear(), work.bent.clear(), work.between.clear(), work.noisy.clear();
+  work.unclear.clear(), work.bent.clear(), work.between.clear();
+  work.noisy.clear(), work.halved.clear();
   CrossingLists inner = work.crossings.lists(found.size());
   const auto is_before = [](const Pixel& a, const Pixel& b) {
     return a.y != b.y ? a.y < b.y : a.x < b.x;
   };
+  const auto add_fine = [&](const Pixel& pixel) {
+    if (half_means_)
+      work.halved.push_back(pixel);
+    else if (pixel.grainy)
+      work.noisy.push_back(pixel);
+  };
   auto next = fine.begin();
   for (const Pixel& pixel : found) {
-    while (next != fine.end() && is_before(*next, pixel)) work.noisy.push_back(*next++);
+    while (next != fine.end() && is_before(*next, pixel)) add_fine(*next++);
     if (next != fine.end() && !is_before(pixel, *next)) {
-      // What an edge parts is not clear either.
-      work.unclear.push_back({{.x = pixel.x, .y = pixel.y, .silhouette = pixel.silhouette}});
-      ++next, --counts.filtered;
-      continue;
+      --counts.filtered;
+      if ((next++)->grainy) {
+        // What an edge parts is not clear either.
+        work.unclear.push_back({{.x = pixel.x, .y = pixel.y, .silhouette = pixel.silhouette}});
+        continue;
+      }
     }
     if ((pixel.hidden || pixel.unseen) && edges_ == nullptr) continue;
     inner.x[inner.count] = pixel.x, inner.y[inner.count] = pixel.y;
@@ -241,7 +250,7 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
     else
       ++inner.count;
   }
-  work.noisy.insert(work.noisy.end(), next, fine.end());
+  std::for_each(next, fine.end(), add_fine);
   if (inner.count > 0) {
     const bool may_bend = tile.bent != nullptr;
     find_crossings(inner, may_bend, work, status);
@@ -252,6 +261,7 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
   counts.blended += static_cast<std::int64_t>(result.pixels.size());
   smooth(tile, work, result);
   settle(tile, result, counts, work, status);
+  settle_halves(tile, result, counts, work, status);
   settle_noise(result, counts, work, status);
   return result;
 }

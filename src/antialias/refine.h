@@ -3,6 +3,7 @@
 #pragma once
 
 #include "antialias/circles.h"
+#include "antialias/half_grid.h"
 #include "antialias/patterns.h"
 #include "antialias/places.h"
 #include "antialias/programs.h"
@@ -61,7 +62,8 @@ class Refiner {
         edges_(edges),
         options_(options),
         outputs_(outputs),
-        patterns_(options.filter, static_cast<std::uint32_t>(options.samples)) {}
+        patterns_(options.filter, static_cast<std::uint32_t>(options.samples)),
+        half_means_(half_means_of(options.filter)) {}
 
   // The pixels of a tile whose values change, in the procedural mode. Every value depends on the
   // pixel alone.
@@ -87,6 +89,9 @@ class Refiner {
                   std::span<float> values) const;
   void add_means(std::span<const Pixel> pixels, std::uint32_t count, Refined& result, Work& work,
                  RunStatus& status) const;
+  void settle_halves(const Tile& tile, Refined& result, Counts& counts, Work& work,
+                     RunStatus& status) const;
+  void fill_halves(Work& work, RunStatus& status) const;
   void settle_noise(Refined& result, Counts& counts, Work& work, RunStatus& status) const;
   static Range range_around(const Tile& tile, const Pixel& pixel, std::size_t output);
   void settle(const Tile& tile, Refined& result, Counts& counts, Work& work,
@@ -97,6 +102,7 @@ class Refiner {
   const Options& options_;
   std::size_t outputs_;
   Patterns patterns_;
+  std::optional<HalfMeans> half_means_;
 };
 
 }  // namespace pse::antialias

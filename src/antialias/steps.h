@@ -1,9 +1,10 @@
 // What is done for many pixels at once: the same results, for different instructions. The bodies
-// are in neighbours.h, fine_steps.h, smooth_steps.h, crossing_steps.h and sample_steps.h, and
+// are in neighbours.h, fine_steps.h, half_steps.h, smooth_steps.h, crossing_steps.h and sample_steps.h, and
 // steps_any.cpp and its like compile them.
 #pragma once
 
 #include "antialias/crossings.h"
+#include "antialias/half_grid.h"
 #include "antialias/smooth.h"
 #include "antialias/tile.h"
 
@@ -15,6 +16,13 @@ struct SearchRoom {
   static constexpr std::size_t beyond = 16;
   std::uint16_t* changes;
   Pixel* found;
+};
+
+// Where the first pixel of a row and its samples are.
+struct HalfRow {
+  const float *path, *middles;           // of the tile
+  const float *beside, *below, *corner;  // of the half grid
+  std::ptrdiff_t row, half_row;          // from a row to the next
 };
 
 // What the program of edges said at the crossings' pixels becomes of them; see refine.cpp.
@@ -34,6 +42,12 @@ struct Steps {
   std::size_t (*find_fine)(const Tile& tile, Pixel* found);
   // Smooths some of the tile's planes, and moves their rows together as if the area were the rect.
   void (*smooth)(const Tile& tile, const Smoothing& by, std::span<float* const> planes);
+
+  // The means of pixels in a row from samples half a pixel apart; `known` stays -1 where these tell
+  // all, and is 0 where something changes faster. Both may be read and written up to 16 behind
+  // their ends.
+  void (*mean_of_halves)(const HalfRow& at, const HalfMeans& by, std::size_t count, float* means,
+                         std::int32_t* known);
 
   // Of the crossings' pixels, where the edges are `lines` (edge_outputs lists, derive.h): is an
   // edge within `farthest`, are two within `reach` of the kernel, do they explain every jump?

@@ -1,6 +1,7 @@
 // For every processor.
 #include "antialias/crossing_steps.h"
 #include "antialias/fine_steps.h"
+#include "antialias/half_steps.h"
 #include "antialias/neighbours.h"
 #include "antialias/sample_steps.h"
 #include "antialias/smooth_steps.h"
@@ -11,6 +12,7 @@ const Steps& steps_for_any() {
   static constexpr Steps these = {{search<8, 1>, search<8, 2>},
                                   find_fine<8>,
                                   smooth<8>,
+                                  mean_of_halves<8>,
                                   see_nearness<4>,
                                   find_second_looks,
                                   look_again<4>,

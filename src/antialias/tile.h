@@ -44,6 +44,9 @@ struct Pixel {
   // The program does not tell where the edges are: a search ends elsewhere, or hardly a neighbour
   // goes the same way.
   bool untold = false;
+  // Noise is so fine and strong here that an edge's two sides do not tell of the pixel; and so fine
+  // that samples half a pixel apart do not either.
+  bool grainy = false, wild = false;
   // Bit k: some output jumps towards neighbour k of `around`.
   std::uint8_t jumps = 0;
 

@@ -247,6 +247,8 @@ antialias::Programs Surfaces::combine(std::vector<SurfaceProgram> programs, anti
   };
   antialias::Programs all;
   all.has_paths = mode == antialias::Mode::procedural;
+  // Of a frame nothing is known that holds for all objects.
+  all.has_untold_noise = true;
   all.shown = all.quiet = add(shown, all.has_paths);
   const auto& outputs = all.shown->module().outputs;
   const auto path = std::ranges::find(outputs, antialias::path_name, &ir::Output::name);

@@ -147,6 +147,11 @@ void Shader::make_module() {
        }));
   if (paths_ != Paths::none) module.outputs.push_back({antialias::path_name});
   if (has_ends) module.outputs.push_back({antialias::ends_name});
+  const std::size_t fine_output = module.outputs.size();
+  if (paths_ == Paths::of_traced && std::ranges::any_of(parts_, [&](const Part& part) {
+        return number_of(part, antialias::fine_name) != none;
+      }))
+    module.outputs.push_back({antialias::fine_name});
   split_->first_slot = 0;
 
   // What is read, and where each program finds it.
@@ -176,6 +181,9 @@ void Shader::make_module() {
       part.outputs_of[path].push_back(path_output_);
       const std::size_t ends = number_of(part, antialias::ends_name);
       if (ends != none) part.outputs_of[ends].push_back(path_output_ + 1);
+      const std::size_t fine = number_of(part, antialias::fine_name);
+      if (fine != none && fine_output < module.outputs.size())
+        part.outputs_of[fine].push_back(fine_output);
     }
     part.first_check = static_cast<std::int32_t>(module.checks.size());
     module.checks.insert(module.checks.end(), own.checks.begin(), own.checks.end());

@@ -13,7 +13,7 @@ namespace {
 
 // What deviates by less from its mean is left to its neighbours (smooth.h); three samples in a row,
 // of which neither tells of the others, bend by 6 times its square.
-constexpr float least_deviation = 0.01f;
+constexpr float least_deviation = 0.0175f;
 constexpr float least_bend_squared = 6 * least_deviation * least_deviation;
 // What deviates by more is grainy.
 constexpr float most_deviation = 0.0225f;

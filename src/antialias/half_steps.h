@@ -10,13 +10,10 @@ namespace pse::antialias {
 
 namespace {
 
-// What changes faster than such samples tell shows in fourth differences above this.
-constexpr float most_fourth = 0.8f;
 constexpr float finite = 3e38f;
 
 template <std::size_t lanes>
-void mean_of_halves(const HalfRow& at, const HalfMeans& by, std::size_t count, float* means,
-                    std::int32_t* known) {
+void mean_of_halves(const HalfRow& at, const HalfMeans& by, std::size_t count, float* means) {
   using V = typename LanesOf<lanes>::Floats;
   using Answers = AnswersOf<V>;
   const std::ptrdiff_t row = at.row, half_row = at.half_row;
@@ -42,22 +39,15 @@ void mean_of_halves(const HalfRow& at, const HalfMeans& by, std::size_t count, f
     const auto next = [&](std::ptrdiff_t step) {
       return choose(has_next, load<V>(middles + step), middle);
     };
-    const V left = load<V>(beside), right = load<V>(beside + 1);
-    const V under = load<V>(below), over = load<V>(below + half_row);
-    const V before = next(-1), behind = next(1), beneath = next(-row), above = next(row);
-    const V sides = sum(left, right, under, over);
+    const V sides =
+        sum(load<V>(beside), load<V>(beside + 1), load<V>(below), load<V>(below + half_row));
     const V corners = sum(load<V>(corner), load<V>(corner + 1), load<V>(corner + half_row),
                           load<V>(corner + half_row + 1));
-    const V others = sum(before, behind, beneath, above);
+    const V others = sum(next(-1), next(1), next(-row), next(row));
     const V mean = weight(&HalfWeights::middle) * middle + weight(&HalfWeights::side) * sides +
                    weight(&HalfWeights::corner) * corners + weight(&HalfWeights::next) * others;
-    const V in_row = 6 * middle - 4 * (left + right) + (before + behind);
-    const V in_column = 6 * middle - 4 * (under + over) + (beneath + above);
-    const V fourth = choose(has_next, in_row * in_row + in_column * in_column, V{});
-
     // What a single sample shows may weigh less than nothing.
     store(means + i, choose(size(mean) < finite, smaller(larger(mean, least), most), mean));
-    store(known + i, load<Answers>(known + i) & (fourth < most_fourth * most_fourth));
   }
 }
 

@@ -221,7 +221,7 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
     return a.y != b.y ? a.y < b.y : a.x < b.x;
   };
   const auto add_fine = [&](const Pixel& pixel) {
-    if (half_means_)
+    if (half_means_ && !pixel.wild)
       work.halved.push_back(pixel);
     else if (pixel.grainy)
       work.noisy.push_back(pixel);

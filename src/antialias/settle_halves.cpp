@@ -49,7 +49,6 @@ void Refiner::settle_halves(const Tile& tile, Refined& result, Counts& counts, W
   const auto width = static_cast<std::size_t>(tile.rect.width());
   const std::size_t room = width + HalfGrid::beyond;
   work.sums.resize(outputs_ * room);
-  work.flags.resize(room);
   std::size_t kept = result.pixels.size();
   const std::size_t before = kept;
   result.resize(before + pixels.size());
@@ -59,7 +58,6 @@ void Refiner::settle_halves(const Tile& tile, Refined& result, Counts& counts, W
     std::size_t end = i;
     while (end < pixels.size() && pixels[end].y == y) ++end;
     const auto count = static_cast<std::size_t>(pixels[end - 1].x - first + 1);
-    std::ranges::fill(work.flags, -1);
     const std::size_t here = tile.at(first, y);
     for (std::size_t o = 0; o < outputs_; ++o) {
       const int x = first - tile.rect.x0, row = y - tile.rect.y0;
@@ -70,15 +68,10 @@ void Refiner::settle_halves(const Tile& tile, Refined& result, Counts& counts, W
                        grid.at(Half::corner, o, x, row),
                        tile.area.width(),
                        static_cast<std::ptrdiff_t>(grid.row())};
-      steps().mean_of_halves(at, *half_means_, count, work.sums.data() + o * room,
-                             work.flags.data());
+      steps().mean_of_halves(at, *half_means_, count, work.sums.data() + o * room);
     }
     for (; i < end; ++i) {
       const auto at = static_cast<std::size_t>(pixels[i].x - first);
-      if (pixels[i].wild && work.flags[at] == 0) {
-        work.noisy.push_back(pixels[i]);
-        continue;
-      }
       bool is_finite = true;
       result.pixels[kept] = pixels[i];
       for (std::size_t o = 0; o < outputs_; ++o) {

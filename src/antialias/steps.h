@@ -1,6 +1,6 @@
 // What is done for many pixels at once: the same results, for different instructions. The bodies
-// are in neighbours.h, fine_steps.h, half_steps.h, smooth_steps.h, crossing_steps.h and sample_steps.h, and
-// steps_any.cpp and its like compile them.
+// are in neighbours.h, fine_steps.h, half_steps.h, smooth_steps.h, crossing_steps.h and
+// sample_steps.h, and steps_any.cpp and its like compile them.
 #pragma once
 
 #include "antialias/crossings.h"
@@ -43,11 +43,9 @@ struct Steps {
   // Smooths some of the tile's planes, and moves their rows together as if the area were the rect.
   void (*smooth)(const Tile& tile, const Smoothing& by, std::span<float* const> planes);
 
-  // The means of pixels in a row from samples half a pixel apart; `known` stays -1 where these tell
-  // all, and is 0 where something changes faster. Both may be read and written up to 16 behind
-  // their ends.
-  void (*mean_of_halves)(const HalfRow& at, const HalfMeans& by, std::size_t count, float* means,
-                         std::int32_t* known);
+  // The means of pixels in a row from samples half a pixel apart; they may be written up to 16
+  // behind their end.
+  void (*mean_of_halves)(const HalfRow& at, const HalfMeans& by, std::size_t count, float* means);
 
   // Of the crossings' pixels, where the edges are `lines` (edge_outputs lists, derive.h): is an
   // edge within `farthest`, are two within `reach` of the kernel, do they explain every jump?

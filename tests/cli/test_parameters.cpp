@@ -41,6 +41,8 @@ TEST_F(Parameters, ThatCannotBeMeantAreToldOfOnce) {
   const std::string rays = "`density` is not seen by as many rays as `samples` says";
   const std::string many = "`density` would take more than 4096 steps of a ray";
   const std::string once = "`density` is looked at once by a ray at most";
+  const std::string hard = "`density` stops no light, or all of it";
+  const std::string flat = "`density` has no normal";
   const std::string ball = "`density` is not cut off by a ball";
   const std::string mirror = "`density` has a surface whose `mirror` is no index of refraction";
   const std::vector<std::pair<std::string, std::string>> cases = {
@@ -55,6 +57,13 @@ TEST_F(Parameters, ThatCannotBeMeantAreToldOfOnce) {
       {"samples = 1025, step = 1, shadows = 0, crevices = 0", rays},
       {"step = 0.000000001, samples = 1", many},
       {"step = 1000000000", once},
+      {"hardness = 0", hard},
+      {"hardness = -1", hard},
+      {"hardness = NAN", hard},
+      {"hardness = INF", hard},
+      {"epsilon = 0", flat},
+      {"epsilon = -0.1", flat},
+      {"epsilon = NAN", flat},
       {"ball = NAN", ball},
       {"ball = -1", ball},
       {"mirror = 0", mirror},
@@ -103,16 +112,20 @@ TEST_F(Parameters, AtTheLimitsAreSilent) {
 }
 
 TEST_F(Parameters, IndicesOutOfRangeAreToldOf) {
-  for (const char* index : {"0.05", "11", "1 + 9.5 * d", "1 + 1000000 * d"}) {
+  for (const char* index :
+       {"0.05", "0.5", "1 - 0.01 * d", "1 / 1.5", "11", "1 + 9.5 * d", "1 + 1000000 * d"}) {
     SCOPED_TRACE(index);
     const std::string err = said("glass(density, tint, samples = 1)", index);
-    EXPECT_TRUE(contains(err, "a.pse:3:10: warning: `tint` gives an index of refraction outside"));
+    EXPECT_TRUE(
+        contains(err, "a.pse:3:10: warning: `tint` gives an index of refraction outside [1, "));
+    EXPECT_TRUE(contains(err, "a bubble in water has 1.33 at density 0"));
     EXPECT_EQ(warnings(err), 1u) << err;
   }
-  // An index is relative, so 1 / 2 is as good as 2.
-  for (const char* index : {"0.1", "0.5", "10", "1 + 9 * d"})
+  // A bubble in water is no mistake, whatever rounding leaves of its index.
+  for (const char* index : {"1", "10", "1 + 9 * d", "1.33 - 0.33 * d", "lerp(d, 1.33, 1)"})
     EXPECT_FALSE(said("glass(density, tint, samples = 1)", index).contains("warning")) << index;
-  EXPECT_NE(rendered("glass(density, tint)", "0").status, 0);
+  for (const char* none : {"0", "-1.5", "0 / 0"})
+    EXPECT_NE(rendered("glass(density, tint)", none).status, 0) << none;
 }
 
 TEST_F(Parameters, ColoursThatMissPartsAreErrorsThatSaySo) {

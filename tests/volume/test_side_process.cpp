@@ -78,7 +78,7 @@ TEST(SideProcess, EndsWithTheProcessThatItServes) {
   ::kill(waiting, SIGKILL);
   ::waitpid(waiting, nullptr, 0);
   pollfd line{alive[0], POLLIN, 0};
-  EXPECT_EQ(::poll(&line, 1, 10'000), 1) << "still there after ten seconds";
+  ASSERT_EQ(::poll(&line, 1, 10'000), 1) << "still there after ten seconds";
   EXPECT_FALSE(get(alive[0], &started, 1));
   ::close(alive[0]);
 }

@@ -141,6 +141,33 @@ TEST_F(Parameters, ColoursThatMissPartsAreErrorsThatSaySo) {
   }
 }
 
+// The function that gave NaN is the one that is told of, the colour's before the light's.
+TEST_F(Parameters, ColoursThatAreNoneAreToldOf) {
+  const std::string programs =
+      "function density(p)\n    return soft_sphere(p, 0.8, 0.1)\n"
+      "function dark(d, p)\n    return [sqrt(p.x) 0.5 0.2]\n"
+      "function shade(c, p)\n    return c * sqrt(p.x)\n"
+      "function shine(p, d)\n    return [sqrt(p.x) 0.5 0.2]\n";
+  const std::vector<std::pair<std::string, int>> cases = {
+      {"hypertexture(density, dark)", 3},
+      {"hypertexture(density, dark, shade)", 3},
+      {"hypertexture(density, dark, luminous, shaded = false)", 3},
+      {"hypertexture(density, clay, shade)", 5},
+      {"raymarch(density, shine, [x y 2], [0 0 -1], 0, 4).rgb", 7},
+  };
+  for (const auto& [call, line] : cases) {
+    SCOPED_TRACE(call);
+    file("a.pse", programs + "color = " + call + "\n");
+    const std::string err = pse({"render", "a.pse", "-o", "a.exr", "--res", "16x16"}).err;
+    EXPECT_TRUE(contains(err, "a.pse:" + std::to_string(line) + ":10: warning: `"));
+    EXPECT_TRUE(contains(err, "gives rays NaN for a colour at "));
+    EXPECT_EQ(warnings(err), 1u) << err;
+  }
+  file("a.pse", programs + "color = hypertexture(density, clay)\n");
+  EXPECT_EQ(pse({"render", "a.pse", "-o", "a.exr", "--res", "16x16"}).err.find("warning"),
+            std::string::npos);
+}
+
 // What follows from one error is no other.
 TEST_F(Parameters, ADensityThatIsAVectorIsOneError) {
   const Ended ended = rendered("hypertexture(three)");

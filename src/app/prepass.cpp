@@ -19,8 +19,14 @@ constexpr int probe_block = 12;       // one probe in a square of so many pixels
 constexpr int quarters = 4;           // of a cell: one ray through each
 constexpr std::int64_t enough = 500;  // rays that meet matter, to judge by
 constexpr float margin = 2;           // what is found is widened by so many coarse steps
-// Where the part not proven empty is at most this, the picture marches through all of it.
-constexpr double little = 1.0 / 40;
+// What may hold matter is all marched where that is at most this part of all, or this many rays.
+constexpr double little = 1.0 / 40, few_rays = 128 * 128;
+// Where this part of all is found, a picture takes less long by ten at most: no reason to miss any.
+constexpr double much = 1.0 / 10;
+// Searches have seen enough where so much at most is left, so many rays at least have met matter,
+// and one in so many at most what had been missed.
+constexpr double left_at_most = 1.0 / 5;
+constexpr std::int64_t met_at_least = 1500, met_for_each_missed = 3000;
 
 // A place within a block that looks random and is the same at every run.
 int scattered(int x, int y, int salt, int below) {
@@ -41,9 +47,12 @@ class Prepass {
     checked_.assign(spans_.near.size(), false);
   }
 
-  // `possible`: all there is to look at, where that is known.
-  std::optional<Spans> run(const Spans* possible) {
+  // `possible`: all there is to look at, where that is known. Stops where it is found to be much.
+  std::optional<Spans> run(const Possible* all) {
+    const Spans* possible = all != nullptr ? &all->spans : nullptr;
     if (!search(possible) || !follow()) return std::nullopt;
+    found_much_ = all != nullptr && within(*possible).marched() >= much * all->all;
+    if (found_much_) return spans_;
     // Other rays and other steps, until enough of them have met matter and nothing that was missed.
     if (!probe(possible)) return std::nullopt;
     for (int k = 1; k < quarters && !is_too_coarse(); ++k) {
@@ -54,8 +63,11 @@ class Prepass {
     }
     return possible != nullptr ? within(*possible) : spans_;
   }
-  // How many rays met what had not been found before them.
+  // How many rays met what had not been found before them, of those that met anything.
   std::int64_t missed() const { return missed_; }
+  std::int64_t met() const { return met_; }
+  // Whether so much was found that all that is possible may as well be marched.
+  bool found_much() const { return found_much_; }
   // Whether the last rays met nothing else.
   bool settled() const { return settled_ && !is_too_coarse(); }
 
@@ -266,7 +278,7 @@ class Prepass {
   Spans spans_;
   std::vector<bool> checked_;
   std::int64_t missed_ = 0, met_ = 0;
-  bool settled_ = false;
+  bool settled_ = false, found_much_ = false;
   float reach_ = std::numeric_limits<float>::infinity();  // a coarse step along the ray
 };
 
@@ -287,6 +299,13 @@ Spans Spans::everywhere(int width, int height) {
   Spans spans = nowhere(width, height, 64);
   std::swap(spans.near, spans.far);
   return spans;
+}
+
+double Spans::marched() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < near.size(); ++i)
+    if (!empty(i)) sum += double(far[i]) - double(near[i]);
+  return sum * cell * cell;
 }
 
 bool Spans::widen(std::size_t i, float from, float to) {
@@ -369,34 +388,45 @@ bool SpanSearch::look(std::vector<Ray>& rays, int step) {
 std::optional<Spans> find_spans(SpanSearch& search, BoxBounds* bounds, int width, int height,
                                 int factor, PrepassReport& report) {
   const std::int64_t pixels = std::int64_t{width} * height;
+  const double enough_proven = std::max(little, few_rays / double(pixels));
   std::optional<Possible> possible;
   if (bounds != nullptr) {
     possible = find_possible(*bounds, width, height, pixels);
     if (!possible) return std::nullopt;
     report.boxes = possible->asked;
     report.possible = possible->part;
-    report.proven = possible->part <= little;
-    if (report.proven) return std::move(possible->spans);
   }
+  const auto all = [&] {
+    report.left = 0, report.step = 1;
+    return possible ? std::move(possible->spans) : Spans::everywhere(width, height);
+  };
+  if (report.possible <= enough_proven) return all();
 
   // What has missed something is done again, in steps half as large: of 1 it can only be all.
   for (report.step = factor; report.step > 1 || report.step == factor; report.step /= 2) {
     Prepass prepass(search, width, height, report.step, report);
-    auto spans = prepass.run(possible ? &possible->spans : nullptr);
+    auto spans = prepass.run(possible ? &*possible : nullptr);
     report.evaluations = search.evaluations();
     if (!spans) return std::nullopt;
+    if (possible && prepass.found_much()) return all();
     if (prepass.settled()) {
-      // A closer look at what is neither found nor proven empty.
-      if (possible && !prove_rest(*bounds, *possible, *spans, pixels / 8, little))
-        return std::nullopt;
-      if (possible) report.boxes = possible->asked, report.proven = possible->rest <= little;
+      // A closer look at what is neither found nor proven empty; what is no more than is found is
+      // marched too.
+      report.left = 1;
+      if (possible) {
+        const double most = std::max(enough_proven, spans->marched() / possible->all);
+        if (!prove_rest(*bounds, *possible, *spans, pixels / 8, most)) return std::nullopt;
+        report.boxes = possible->asked;
+        report.left = possible->rest <= most ? 0 : possible->rest;
+      }
+      report.sampled_well = report.step == factor && report.left <= left_at_most &&
+                            prepass.met() >= met_at_least &&
+                            prepass.met() >= met_for_each_missed * prepass.missed();
       return spans;
     }
     if (report.step == factor) report.missed = prepass.missed();
   }
-  report.step = 1;
-  report.proven = possible.has_value();
-  return possible ? std::move(possible->spans) : Spans::everywhere(width, height);
+  return all();
 }
 
 void write_spans(const Spans& spans, int width, int height, const std::string& file) {

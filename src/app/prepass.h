@@ -30,6 +30,8 @@ struct Spans {
     return std::size_t(y) * std::size_t(width) + std::size_t(x);
   }
   bool empty(std::size_t i) const { return !(near[i] <= far[i]); }
+  // What the rays march through, in pixels times depth.
+  double marched() const;
   // Adds a stretch to a cell's; true where that changes it.
   bool widen(std::size_t i, float from, float to);
 };
@@ -39,7 +41,8 @@ class BoxBounds;
 struct PrepassReport {
   std::int64_t boxes = 0;     // whose bounds were computed (prepass_proof.h)
   double possible = 1;        // part of the rays that is not proven empty
-  bool proven = false;        // what is outside the spans is proven empty
+  double left = 0;            // part neither in the spans nor proven empty, only sampled
+  bool sampled_well = false;  // the samples met much matter and next to nothing that was missed
   std::int64_t searched = 0;  // rays looked at, of whatever step
   std::int64_t missed = 0;    // rays that met what the first search had not found
   int step = 1;               // of the search that missed nothing; 1: all that may hold matter

@@ -23,10 +23,6 @@ constexpr float margin = 2;           // what is found is widened by so many coa
 constexpr double little = 1.0 / 40, few_rays = 128 * 128;
 // Where this part of all is found, a picture takes less long by ten at most: no reason to miss any.
 constexpr double much = 1.0 / 10;
-// Searches have seen enough where so much at most is left, so many rays at least have met matter,
-// and one in so many at most what had been missed.
-constexpr double left_at_most = 1.0 / 5;
-constexpr std::int64_t met_at_least = 1500, met_for_each_missed = 3000;
 
 // A place within a block that looks random and is the same at every run.
 int scattered(int x, int y, int salt, int below) {
@@ -419,9 +415,7 @@ std::optional<Spans> find_spans(SpanSearch& search, BoxBounds* bounds, int width
         report.boxes = possible->asked;
         report.left = possible->rest <= most ? 0 : possible->rest;
       }
-      report.sampled_well = report.step == factor && report.left <= left_at_most &&
-                            prepass.met() >= met_at_least &&
-                            prepass.met() >= met_for_each_missed * prepass.missed();
+      report.met = prepass.met(), report.met_new = prepass.missed();
       return spans;
     }
     if (report.step == factor) report.missed = prepass.missed();

@@ -42,7 +42,8 @@ struct PrepassReport {
   std::int64_t boxes = 0;     // whose bounds were computed (prepass_proof.h)
   double possible = 1;        // part of the rays that is not proven empty
   double left = 0;            // part neither in the spans nor proven empty, only sampled
-  bool sampled_well = false;  // the samples met much matter and next to nothing that was missed
+  std::int64_t met = 0;       // rays after the first search that met matter
+  std::int64_t met_new = 0;   // of these, how many met what was not yet known
   std::int64_t searched = 0;  // rays looked at, of whatever step
   std::int64_t missed = 0;    // rays that met what the first search had not found
   int step = 1;               // of the search that missed nothing; 1: all that may hold matter

@@ -56,17 +56,13 @@ std::string span_line(const ProgramFile& program, const lang::Program& tree) {
   return {};
 }
 
-// What only samples tell: a word where they met nothing else, a warning where they say too little.
-void tell_what_is_left(const PrepassReport& report, int factor, Console& console) {
-  const std::string where = fmt::format(
-      "the prepass took samples only of {:.0f} % of what the rays pass through{}: specks thinner "
-      "than {} pixels or steps may be missing there",
-      std::ceil(100 * report.left), report.sampled_well ? ", and later ones met hardly more" : "",
-      factor);
-  if (report.sampled_well)
-    console.note(where);
-  else
-    console.warning("prepass", where + ". Without --prepass none is");
+// That something may be missing, how much was looked at, and what to do about it.
+std::string what_is_left(const PrepassReport& report, int factor) {
+  return fmt::format(
+      "the prepass took samples only of {:.0f} % of what the rays pass through: specks thinner "
+      "than {} pixels or steps may be missing there (of {} later samples that met matter, {} met "
+      "some that was new). Without --prepass none is",
+      std::ceil(100 * report.left), factor, report.met, report.met_new);
 }
 
 }  // namespace
@@ -130,7 +126,7 @@ Exit PrepassStage::run(Session& session, RenderOptions& options, const ProgramFi
                       "put %04d into the name where the frame's number should stand");
   RunStatus status;
   const SignalWatch watch(signals, status);
-  PrepassReport total{.possible = 0, .sampled_well = true, .step = factor};
+  PrepassReport total{.possible = 0, .step = factor};
   for (const int frame : frames) {
     const ImagePlane plane{.width = size.width,
                            .height = size.height,
@@ -157,7 +153,7 @@ Exit PrepassStage::run(Session& session, RenderOptions& options, const ProgramFi
     if (found.missed > 0) total.step = std::min(total.step, found.step);
     total.evaluations += found.evaluations, total.boxes += found.boxes;
     total.possible = std::max(total.possible, found.possible);
-    if (found.left > 0) total.sampled_well = total.sampled_well && found.sampled_well;
+    if (found.left > 0) total.met += found.met, total.met_new += found.met_new;
     total.left = std::max(total.left, found.left);
   }
   if (total.missed > 0)
@@ -169,7 +165,8 @@ Exit PrepassStage::run(Session& session, RenderOptions& options, const ProgramFi
             options.prepass,
             total.step > 1 ? fmt::format("It looked again in steps of {}", total.step)
                            : "All that may hold matter is marched through"));
-  if (steps && total.left > 0) tell_what_is_left(total, options.prepass, session.console);
+  if (steps && total.left > 0)
+    session.console.warning("prepass", what_is_left(total, options.prepass));
   if (counts)
     session.console.note(fmt::format("prepass: {:.0f} density evaluations", total.evaluations));
   if (options.count_evaluations && bounded)

@@ -76,11 +76,13 @@ class SpanSearch {
 };
 
 // The whole prepass of one frame. With `bounds`, what is not proven empty is all there is to look
-// at; where it is little it is the result, and nothing is missed. Else every `factor`th pixel and
-// step of it is looked at and widened by one cell on all sides; then followed wherever matter goes
-// on beyond the cells found. Then others of these steps and all steps of single pixels are looked
-// at: where they meet what was not found, all is done again with half the factor, and with the
-// factor 1 all that may hold matter is the result. Nothing when cancelled or failed.
+// at; where it is little, or much of it is found, it is the result, and nothing is missed. Else
+// every `factor`th pixel and step of it is looked at and widened by one cell on all sides; then
+// followed wherever matter goes on beyond the cells found. Then others of these steps and all steps
+// of single pixels are looked at: where they meet what was not found, all is done again with half
+// the factor, and with the factor 1 all that may hold matter is the result. `report.left` is what
+// was only looked at in samples: where it is 0, nothing is missed. Nothing when cancelled or
+// failed.
 std::optional<Spans> find_spans(SpanSearch& search, BoxBounds* bounds, int width, int height,
                                 int factor, PrepassReport& report);
 

@@ -148,6 +148,11 @@ void apply(Knob& knob, const KnobSetting& setting, Console& console) {
   check_range(knob, setting, console);
 }
 
+// The 2002 chapter's special parameters, which say how a program is run.
+bool is_option_of_chapter(const std::string& name) {
+  return name == "RES" || name == "CLIP" || name == "XFORM";
+}
+
 }  // namespace
 
 std::vector<KnobSetting> knob_settings(const Session& session,
@@ -181,7 +186,10 @@ std::vector<Knob> apply_settings(std::vector<Knob> knobs, const std::vector<Knob
       const std::string near = nearest_name(setting.name, names);
       throw usage_error(
           fmt::format("{}: the program has no knob `{}`", where(setting), setting.name),
-          !near.empty()   ? fmt::format("did you mean `{}`?", near)
+          is_option_of_chapter(setting.name)
+              ? fmt::format("it is no knob: `{0}=...` on the command line, or $PSE_{0}",
+                            setting.name)
+          : !near.empty() ? fmt::format("did you mean `{}`?", near)
           : names.empty() ? "it has no knobs"
                           : fmt::format("its knobs: {}", fmt::join(names, ", ")));
     }

@@ -7,9 +7,7 @@
 #include <numeric>
 
 #include "app/prepass_proof.h"
-#include "app/surfaces.h"
 #include "image/writer.h"
-#include "stream/batches.h"
 
 namespace pse::app {
 namespace {
@@ -19,8 +17,10 @@ constexpr int probe_block = 12;       // one probe in a square of so many pixels
 constexpr int quarters = 4;           // of a cell: one ray through each
 constexpr std::int64_t enough = 500;  // rays that meet matter, to judge by
 constexpr float margin = 2;           // what is found is widened by so many coarse steps
-// Where the part not proven empty is at most this, the picture marches through all of it.
-constexpr double little = 1.0 / 40;
+// What may hold matter is all marched where that is at most this part of all, or this many rays.
+constexpr double little = 1.0 / 40, few_rays = 128 * 128;
+// Where this part of all is found, a picture takes less long by ten at most: no reason to miss any.
+constexpr double much = 1.0 / 10;
 
 // A place within a block that looks random and is the same at every run.
 int scattered(int x, int y, int salt, int below) {
@@ -41,9 +41,12 @@ class Prepass {
     checked_.assign(spans_.near.size(), false);
   }
 
-  // `possible`: all there is to look at, where that is known.
-  std::optional<Spans> run(const Spans* possible) {
+  // `possible`: all there is to look at, where that is known. Stops where it is found to be much.
+  std::optional<Spans> run(const Possible* all) {
+    const Spans* possible = all != nullptr ? &all->spans : nullptr;
     if (!search(possible) || !follow()) return std::nullopt;
+    found_much_ = all != nullptr && within(*possible).marched() >= much * all->all;
+    if (found_much_) return spans_;
     // Other rays and other steps, until enough of them have met matter and nothing that was missed.
     if (!probe(possible)) return std::nullopt;
     for (int k = 1; k < quarters && !is_too_coarse(); ++k) {
@@ -54,8 +57,11 @@ class Prepass {
     }
     return possible != nullptr ? within(*possible) : spans_;
   }
-  // How many rays met what had not been found before them.
+  // How many rays met what had not been found before them, of those that met anything.
   std::int64_t missed() const { return missed_; }
+  std::int64_t met() const { return met_; }
+  // Whether so much was found that all that is possible may as well be marched.
+  bool found_much() const { return found_much_; }
   // Whether the last rays met nothing else.
   bool settled() const { return settled_ && !is_too_coarse(); }
 
@@ -266,7 +272,7 @@ class Prepass {
   Spans spans_;
   std::vector<bool> checked_;
   std::int64_t missed_ = 0, met_ = 0;
-  bool settled_ = false;
+  bool settled_ = false, found_much_ = false;
   float reach_ = std::numeric_limits<float>::infinity();  // a coarse step along the ray
 };
 
@@ -289,6 +295,13 @@ Spans Spans::everywhere(int width, int height) {
   return spans;
 }
 
+double Spans::marched() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < near.size(); ++i)
+    if (!empty(i)) sum += double(far[i]) - double(near[i]);
+  return sum * cell * cell;
+}
+
 bool Spans::widen(std::size_t i, float from, float to) {
   if (near[i] <= from && far[i] >= to) return false;
   near[i] = std::min(near[i], from);
@@ -296,107 +309,46 @@ bool Spans::widen(std::size_t i, float from, float to) {
   return true;
 }
 
-SpanSearch::SpanSearch(const Program& program, const ImagePlane& plane,
-                       const std::vector<Knob>& knobs,
-                       const std::vector<ExternalFunction>& externals, int threads,
-                       RunStatus& status)
-    : program_(program),
-      places_(image_plane_samples(program.module(), plane)),
-      start_(plane_state(program.module(), plane, knobs)),
-      threads_(threads),
-      status_(status) {
-  start_.externals = externals;
-  const auto& outputs = program.module().outputs;
-  const auto find = [&](const char* name) {
-    return static_cast<std::size_t>(
-        std::find_if(outputs.begin(), outputs.end(),
-                     [&](const ir::Output& output) { return output.name == name; }) -
-        outputs.begin());
-  };
-  near_output_ = find("span.0");
-  far_output_ = find("span.1");
-  count_output_ = find("evaluations");
-}
-
-bool SpanSearch::look(std::vector<Ray>& rays, int step) {
-  constexpr std::int64_t batch = 1024;
-  const ir::Module& module = program_.module();
-  FrameState state = start_;
-  for (std::size_t i = 0; i < module.inputs.size(); ++i)
-    if (module.inputs[i].name == "prepass.step") state.uniforms[i] = static_cast<float>(step);
-  program_.kernel->run_frame(state, status_);
-  if (status_.failed_check >= 0 || status_.cancel) return false;
-
-  const auto part = [&](std::int64_t number) {
-    const auto size = static_cast<std::int64_t>(rays.size());
-    return std::span(rays).subspan(
-        static_cast<std::size_t>(number * batch),
-        static_cast<std::size_t>(std::min(batch, size - number * batch)));
-  };
-  std::vector<double> counts(rays.size() / batch + 1);
-  BatchPlan plan;
-  plan.batches = (static_cast<std::int64_t>(rays.size()) + batch - 1) / batch;
-  plan.capacity = batch;
-  plan.threads = threads_;
-  plan.count = [&](std::int64_t number) { return static_cast<std::int64_t>(part(number).size()); };
-  plan.fill = [&](std::int64_t number, std::span<float* const> planes) {
-    const auto some = part(number);
-    std::vector<double> x, y;
-    for (const Ray& ray : some) x.push_back(ray.x), y.push_back(ray.y);
-    places_->fill(x, y, planes);
-    for (std::size_t i = 0; i < module.inputs.size(); ++i) {
-      if (planes[i] == nullptr) continue;
-      for (std::size_t k = 0; k < some.size(); ++k) {
-        if (module.inputs[i].name == "prepass.near") planes[i][k] = some[k].near;
-        if (module.inputs[i].name == "prepass.far") planes[i][k] = some[k].far;
-      }
-    }
-  };
-  plan.drain = [&](std::int64_t number, std::span<float* const> planes) {
-    const auto some = part(number);
-    for (std::size_t k = 0; k < some.size(); ++k) {
-      some[k].near = planes[near_output_][k];
-      some[k].far = planes[far_output_][k];
-      if (count_output_ < module.outputs.size())
-        counts[static_cast<std::size_t>(number)] += double(planes[count_output_][k]);
-    }
-  };
-  const BatchEnd end = run_batches(program_, state, plan, status_);
-  for (const double count : counts) evaluations_ += count;
-  return end.end == RunEnd::finished;
-}
-
 std::optional<Spans> find_spans(SpanSearch& search, BoxBounds* bounds, int width, int height,
                                 int factor, PrepassReport& report) {
   const std::int64_t pixels = std::int64_t{width} * height;
+  const double enough_proven = std::max(little, few_rays / double(pixels));
   std::optional<Possible> possible;
   if (bounds != nullptr) {
     possible = find_possible(*bounds, width, height, pixels);
     if (!possible) return std::nullopt;
     report.boxes = possible->asked;
     report.possible = possible->part;
-    report.proven = possible->part <= little;
-    if (report.proven) return std::move(possible->spans);
   }
+  const auto all = [&] {
+    report.left = 0, report.step = 1;
+    return possible ? std::move(possible->spans) : Spans::everywhere(width, height);
+  };
+  if (report.possible <= enough_proven) return all();
 
   // What has missed something is done again, in steps half as large: of 1 it can only be all.
   for (report.step = factor; report.step > 1 || report.step == factor; report.step /= 2) {
     Prepass prepass(search, width, height, report.step, report);
-    auto spans = prepass.run(possible ? &possible->spans : nullptr);
+    auto spans = prepass.run(possible ? &*possible : nullptr);
     report.evaluations = search.evaluations();
     if (!spans) return std::nullopt;
+    if (possible && prepass.found_much()) return all();
     if (prepass.settled()) {
-      // A closer look at what is neither found nor proven empty.
-      if (possible && !prove_rest(*bounds, *possible, *spans, pixels / 8, little))
-        return std::nullopt;
-      if (possible) report.boxes = possible->asked, report.proven = possible->rest <= little;
+      // A closer look at what is neither found nor proven empty; what is no more than is found is
+      // marched too.
+      report.left = 1;
+      if (possible) {
+        const double most = std::max(enough_proven, spans->marched() / possible->all);
+        if (!prove_rest(*bounds, *possible, *spans, pixels / 8, most)) return std::nullopt;
+        report.boxes = possible->asked;
+        report.left = possible->rest <= most ? 0 : possible->rest;
+      }
+      report.met = prepass.met(), report.met_new = prepass.missed();
       return spans;
     }
     if (report.step == factor) report.missed = prepass.missed();
   }
-  report.step = 1;
-  report.proven = possible.has_value();
-  return possible ? std::move(possible->spans) : Spans::everywhere(width, height);
+  return all();
 }
 
 void write_spans(const Spans& spans, int width, int height, const std::string& file) {

@@ -30,6 +30,8 @@ struct Spans {
     return std::size_t(y) * std::size_t(width) + std::size_t(x);
   }
   bool empty(std::size_t i) const { return !(near[i] <= far[i]); }
+  // What the rays march through, in pixels times depth.
+  double marched() const;
   // Adds a stretch to a cell's; true where that changes it.
   bool widen(std::size_t i, float from, float to);
 };
@@ -39,7 +41,9 @@ class BoxBounds;
 struct PrepassReport {
   std::int64_t boxes = 0;     // whose bounds were computed (prepass_proof.h)
   double possible = 1;        // part of the rays that is not proven empty
-  bool proven = false;        // what is outside the spans is proven empty
+  double left = 0;            // part neither in the spans nor proven empty, only sampled
+  std::int64_t met = 0;       // rays after the first search that met matter
+  std::int64_t met_new = 0;   // of these, how many met what was not yet known
   std::int64_t searched = 0;  // rays looked at, of whatever step
   std::int64_t missed = 0;    // rays that met what the first search had not found
   int step = 1;               // of the search that missed nothing; 1: all that may hold matter
@@ -72,11 +76,13 @@ class SpanSearch {
 };
 
 // The whole prepass of one frame. With `bounds`, what is not proven empty is all there is to look
-// at; where it is little it is the result, and nothing is missed. Else every `factor`th pixel and
-// step of it is looked at and widened by one cell on all sides; then followed wherever matter goes
-// on beyond the cells found. Then others of these steps and all steps of single pixels are looked
-// at: where they meet what was not found, all is done again with half the factor, and with the
-// factor 1 all that may hold matter is the result. Nothing when cancelled or failed.
+// at; where it is little, or much of it is found, it is the result, and nothing is missed. Else
+// every `factor`th pixel and step of it is looked at and widened by one cell on all sides; then
+// followed wherever matter goes on beyond the cells found. Then others of these steps and all steps
+// of single pixels are looked at: where they meet what was not found, all is done again with half
+// the factor, and with the factor 1 all that may hold matter is the result. `report.left` is what
+// was only looked at in samples: where it is 0, nothing is missed. Nothing when cancelled or
+// failed.
 std::optional<Spans> find_spans(SpanSearch& search, BoxBounds* bounds, int width, int height,
                                 int factor, PrepassReport& report);
 

@@ -160,7 +160,9 @@ std::optional<Possible> find_possible(BoxBounds& bounds, int width, int height, 
     for (int x = 0; x < width; x += largest_block) boxes.push_back({x, y, largest_block});
   if (!bounds.look(boxes)) return std::nullopt;
   found.asked = static_cast<std::int64_t>(boxes.size());
-  for (const Box& box : boxes) found.all += march(box);
+  for (const Box& box : boxes)
+    found.all += march(box) / (double(box.size) * box.size) * std::min(box.size, width - box.x) *
+                 std::min(box.size, height - box.y);
   std::erase_if(boxes, [](const Box& box) { return !may_hold(box); });
 
   // In pieces about as long as wide, for a march as long as the picture is high; then halved.
@@ -179,10 +181,7 @@ std::optional<Possible> find_possible(BoxBounds& bounds, int width, int height, 
 
   for (const Box& box : boxes)
     each_cell(found.spans, box, [&](std::size_t i) { found.spans.widen(i, box.near, box.far); });
-  double marched = 0;
-  for (std::size_t i = 0; i < found.spans.near.size(); ++i)
-    if (!found.spans.empty(i)) marched += march({0, 0, 1, found.spans.near[i], found.spans.far[i]});
-  found.part = found.all > 0 ? marched / found.all : 0;
+  found.part = found.all > 0 ? found.spans.marched() / found.all : 0;
   found.boxes = std::move(boxes);
   return found;
 }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/compile_settings.h"
 #include "app/function_program.h"
@@ -24,16 +25,18 @@ PrepassStage::~PrepassStage() {
 
 namespace {
 
+// Whether a program's span looks for matter in steps; one of its own making tells no density.
+bool takes_steps(const ir::Module& module) {
+  return std::any_of(module.inputs.begin(), module.inputs.end(),
+                     [](const ir::Input& input) { return input.name == "prepass.step"; });
+}
+
 // The program of the bounds of `span`'s depth and density; null where it cannot be made.
 std::shared_ptr<const Program> compile_bounds(ProgramFile& program, const LowerHost& host,
                                               const CompileOptions& options) {
   Diagnostics ignored;
   auto front = compile_front(program.sources, program.file, host, options, ignored);
   if (!front) return nullptr;
-  // A span of the program's own making tells no density.
-  if (std::none_of(front->module.inputs.begin(), front->module.inputs.end(),
-                   [](const ir::Input& input) { return input.name == "prepass.step"; }))
-    return nullptr;
   front->calls.clear();
   bounds::bound_outputs(front->module, {.known = {{"prepass.step", -1.0f}}});
   front->program.outputs.clear();
@@ -51,6 +54,15 @@ std::string span_line(const ProgramFile& program, const lang::Program& tree) {
       return fmt::format("span = {}_span{}\n", marcher,
                          program.sources.text(*call).substr(marcher.size()));
   return {};
+}
+
+// That something may be missing, how much was looked at, and what to do about it.
+std::string what_is_left(const PrepassReport& report, int factor) {
+  return fmt::format(
+      "the prepass took samples only of {:.0f} % of what the rays pass through: specks thinner "
+      "than {} pixels or steps may be missing there (of {} later samples that met matter, {} met "
+      "some that was new). Without --prepass none is",
+      std::ceil(100 * report.left), factor, report.met, report.met_new);
 }
 
 }  // namespace
@@ -92,7 +104,10 @@ Exit PrepassStage::run(Session& session, RenderOptions& options, const ProgramFi
   report(stored.load(compiled->module()), program.sources, session);
   CompileOptions bound_with = compile_with;
   bound_with.lower.outputs = {"span"};
-  const auto bounded = compile_bounds(program, host, bound_with);
+  const bool steps = takes_steps(compiled->module());
+  const auto bounded = steps ? compile_bounds(program, host, bound_with) : nullptr;
+  // A span without steps is asked for in every pixel, and is what the program says.
+  const int factor = steps ? options.prepass : 1;
 
   // One image per frame.
   const Resolution size = options.resolution.value_or(Resolution{512, 512});
@@ -111,9 +126,7 @@ Exit PrepassStage::run(Session& session, RenderOptions& options, const ProgramFi
                       "put %04d into the name where the frame's number should stand");
   RunStatus status;
   const SignalWatch watch(signals, status);
-  PrepassReport total{.step = options.prepass};
-  bool proven = true;
-  double possible = 0;
+  PrepassReport total{.possible = 0, .step = factor};
   for (const int frame : frames) {
     const ImagePlane plane{.width = size.width,
                            .height = size.height,
@@ -126,8 +139,8 @@ Exit PrepassStage::run(Session& session, RenderOptions& options, const ProgramFi
     if (bounded)
       bounds.emplace(*bounded, plane, knobs, stored.functions(), options.threads, status);
     PrepassReport found;
-    const auto spans = find_spans(search, bounds ? &*bounds : nullptr, size.width, size.height,
-                                  options.prepass, found);
+    const auto spans =
+        find_spans(search, bounds ? &*bounds : nullptr, size.width, size.height, factor, found);
     if (const int signal = signals.stop_signal()) return static_cast<Exit>(128 + signal);
     if (!spans) {
       const auto check = static_cast<std::size_t>(std::max(0, status.failed_check.load()));
@@ -139,7 +152,9 @@ Exit PrepassStage::run(Session& session, RenderOptions& options, const ProgramFi
     total.missed += found.missed;
     if (found.missed > 0) total.step = std::min(total.step, found.step);
     total.evaluations += found.evaluations, total.boxes += found.boxes;
-    proven = proven && found.proven, possible = std::max(possible, found.possible);
+    total.possible = std::max(total.possible, found.possible);
+    if (found.left > 0) total.met += found.met, total.met_new += found.met_new;
+    total.left = std::max(total.left, found.left);
   }
   if (total.missed > 0)
     session.console.warning(
@@ -150,12 +165,15 @@ Exit PrepassStage::run(Session& session, RenderOptions& options, const ProgramFi
             options.prepass,
             total.step > 1 ? fmt::format("It looked again in steps of {}", total.step)
                            : "All that may hold matter is marched through"));
+  if (steps && total.left > 0)
+    session.console.warning("prepass", what_is_left(total, options.prepass));
   if (counts)
     session.console.note(fmt::format("prepass: {:.0f} density evaluations", total.evaluations));
   if (options.count_evaluations && bounded)
     session.console.note(fmt::format(
         "prepass: the bounds of {} boxes leave {:.1f} % of the rays that may hold matter{}",
-        total.boxes, 100 * possible, proven ? "; nothing is missed" : ", which was sampled"));
+        total.boxes, 100 * total.possible,
+        total.left > 0 ? ", which was sampled" : "; nothing is missed"));
   options.images.push_back({"prepass", pattern, true});
   return Exit::ok;
 }

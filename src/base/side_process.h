@@ -5,6 +5,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -49,15 +50,18 @@ bool put_all(int to, const Values& values) {
          put(to, values.data(), count * sizeof(typename Values::value_type));
 }
 
-// `most`: values that are taken. Memory grows with what has come, not with what is announced.
+// `most`: values that are taken. Room for all that are announced is made when some of them have
+// come; memory is used as they come.
 template <class Values>
 bool get_all(int from, Values& values, std::uint64_t most = std::uint64_t{1} << 30) {
-  constexpr std::uint64_t piece = std::uint64_t{1} << 20;
+  constexpr std::uint64_t some = std::uint64_t{1} << 20, piece = some / 16;
   std::uint64_t count = 0;
   if (!get(from, &count, sizeof count) || count > most) return false;
   values.clear();
+  values.reserve(std::min(count, some));
   while (values.size() < count) {
-    const std::uint64_t have = values.size(), next = std::min(count, have + std::max(have, piece));
+    if (values.size() == some) values.reserve(count);
+    const std::uint64_t have = values.size(), next = std::min(count, have + piece);
     values.resize(next);
     if (!get(from, values.data() + have, (next - have) * sizeof(typename Values::value_type)))
       return false;
@@ -99,12 +103,17 @@ template <class Work, class Take>
 Ended run(rlim_t most_memory, rlim_t most_seconds, Work work, Take take) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) return Ended::not_started;
-  const pid_t child = ::fork();
+  ::fcntl(ends[1], F_SETPIPE_SZ, 1 << 20);  // fewer turns; more of them where it is refused
+  const pid_t served = ::getpid(), child = ::fork();
   if (child < 0) {
     ::close(ends[0]), ::close(ends[1]);
     return Ended::not_started;
   }
   if (child == 0) {
+    // It ends with the thread that waits for it, and cannot wait for itself to read.
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::getppid() != served) ::_exit(1);
+    ::close(ends[0]);
     settle(most_memory, most_seconds);
     bool sent = false;
     try {

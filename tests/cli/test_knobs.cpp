@@ -62,6 +62,11 @@ TEST_F(Knobs, ParameterFilesInBothForms) {
   level({"--params", "bad.toml"});
   EXPECT_EQ(last.status, 2);
   EXPECT_TRUE(contains(last.err, "bad.toml:1"));
+  // What belongs on the command line is no knob, and is said so.
+  file("s.txt", "RES 96 96\n");
+  level({"--params", "s.txt"});
+  EXPECT_EQ(last.status, 2);
+  EXPECT_TRUE(contains(last.err, "`RES=...` on the command line, or $PSE_RES"));
   level({"--params", "missing.txt"});
   EXPECT_EQ(last.status, 4);
 }

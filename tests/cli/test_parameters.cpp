@@ -41,6 +41,8 @@ TEST_F(Parameters, ThatCannotBeMeantAreToldOfOnce) {
   const std::string rays = "`density` is not seen by as many rays as `samples` says";
   const std::string many = "`density` would take more than 4096 steps of a ray";
   const std::string once = "`density` is looked at once by a ray at most";
+  const std::string hard = "`density` stops no light, or all of it";
+  const std::string flat = "`density` has no normal";
   const std::string ball = "`density` is not cut off by a ball";
   const std::string mirror = "`density` has a surface whose `mirror` is no index of refraction";
   const std::vector<std::pair<std::string, std::string>> cases = {
@@ -55,6 +57,13 @@ TEST_F(Parameters, ThatCannotBeMeantAreToldOfOnce) {
       {"samples = 1025, step = 1, shadows = 0, crevices = 0", rays},
       {"step = 0.000000001, samples = 1", many},
       {"step = 1000000000", once},
+      {"hardness = 0", hard},
+      {"hardness = -1", hard},
+      {"hardness = NAN", hard},
+      {"hardness = INF", hard},
+      {"epsilon = 0", flat},
+      {"epsilon = -0.1", flat},
+      {"epsilon = NAN", flat},
       {"ball = NAN", ball},
       {"ball = -1", ball},
       {"mirror = 0", mirror},
@@ -103,16 +112,20 @@ TEST_F(Parameters, AtTheLimitsAreSilent) {
 }
 
 TEST_F(Parameters, IndicesOutOfRangeAreToldOf) {
-  for (const char* index : {"0.05", "11", "1 + 9.5 * d", "1 + 1000000 * d"}) {
+  for (const char* index :
+       {"0.05", "0.5", "1 - 0.01 * d", "1 / 1.5", "11", "1 + 9.5 * d", "1 + 1000000 * d"}) {
     SCOPED_TRACE(index);
     const std::string err = said("glass(density, tint, samples = 1)", index);
-    EXPECT_TRUE(contains(err, "a.pse:3:10: warning: `tint` gives an index of refraction outside"));
+    EXPECT_TRUE(
+        contains(err, "a.pse:3:10: warning: `tint` gives an index of refraction outside [1, "));
+    EXPECT_TRUE(contains(err, "a bubble in water has 1.33 at density 0"));
     EXPECT_EQ(warnings(err), 1u) << err;
   }
-  // An index is relative, so 1 / 2 is as good as 2.
-  for (const char* index : {"0.1", "0.5", "10", "1 + 9 * d"})
+  // A bubble in water is no mistake, whatever rounding leaves of its index.
+  for (const char* index : {"1", "10", "1 + 9 * d", "1.33 - 0.33 * d", "lerp(d, 1.33, 1)"})
     EXPECT_FALSE(said("glass(density, tint, samples = 1)", index).contains("warning")) << index;
-  EXPECT_NE(rendered("glass(density, tint)", "0").status, 0);
+  for (const char* none : {"0", "-1.5", "0 / 0"})
+    EXPECT_NE(rendered("glass(density, tint)", none).status, 0) << none;
 }
 
 TEST_F(Parameters, ColoursThatMissPartsAreErrorsThatSaySo) {
@@ -126,6 +139,33 @@ TEST_F(Parameters, ColoursThatMissPartsAreErrorsThatSaySo) {
     EXPECT_FALSE(ended.err.contains("outside 1..")) << ended.err;
     EXPECT_EQ(ended.err.find("error:"), ended.err.rfind("error:")) << ended.err;
   }
+}
+
+// The function that gave NaN is the one that is told of, the colour's before the light's.
+TEST_F(Parameters, ColoursThatAreNoneAreToldOf) {
+  const std::string programs =
+      "function density(p)\n    return soft_sphere(p, 0.8, 0.1)\n"
+      "function dark(d, p)\n    return [sqrt(p.x) 0.5 0.2]\n"
+      "function shade(c, p)\n    return c * sqrt(p.x)\n"
+      "function shine(p, d)\n    return [sqrt(p.x) 0.5 0.2]\n";
+  const std::vector<std::pair<std::string, int>> cases = {
+      {"hypertexture(density, dark)", 3},
+      {"hypertexture(density, dark, shade)", 3},
+      {"hypertexture(density, dark, luminous, shaded = false)", 3},
+      {"hypertexture(density, clay, shade)", 5},
+      {"raymarch(density, shine, [x y 2], [0 0 -1], 0, 4).rgb", 7},
+  };
+  for (const auto& [call, line] : cases) {
+    SCOPED_TRACE(call);
+    file("a.pse", programs + "color = " + call + "\n");
+    const std::string err = pse({"render", "a.pse", "-o", "a.exr", "--res", "16x16"}).err;
+    EXPECT_TRUE(contains(err, "a.pse:" + std::to_string(line) + ":10: warning: `"));
+    EXPECT_TRUE(contains(err, "gives rays NaN for a colour at "));
+    EXPECT_EQ(warnings(err), 1u) << err;
+  }
+  file("a.pse", programs + "color = hypertexture(density, clay)\n");
+  EXPECT_EQ(pse({"render", "a.pse", "-o", "a.exr", "--res", "16x16"}).err.find("warning"),
+            std::string::npos);
 }
 
 // What follows from one error is no other.

@@ -1,6 +1,7 @@
 // Work in a process of its own: what it sends arrives whole, and whatever it does, this process
 // goes on and learns how it ended.
 #include <gtest/gtest.h>
+#include <poll.h>
 
 #include <cstdlib>
 #include <numeric>
@@ -52,6 +53,34 @@ TEST(SideProcess, EndsWithItsTime) {
     return true;
   };
   EXPECT_EQ(numbers_of(work, came, 1), Ended::took_too_long);
+}
+
+// Who waits for a long read is killed: the reader ends at once, not when it has something to send.
+TEST(SideProcess, EndsWithTheProcessThatItServes) {
+  int alive[2];
+  ASSERT_EQ(::pipe(alive), 0);
+  const pid_t waiting = ::fork();
+  if (waiting == 0) {
+    ::close(alive[0]);
+    std::vector<int> came;
+    const auto work = [&](int) {
+      const char started = 1;
+      put(alive[1], &started, 1);
+      while (true) ::pause();
+      return true;
+    };
+    numbers_of(work, came);
+    ::_exit(0);
+  }
+  ::close(alive[1]);
+  char started = 0;
+  ASSERT_TRUE(get(alive[0], &started, 1));
+  ::kill(waiting, SIGKILL);
+  ::waitpid(waiting, nullptr, 0);
+  pollfd line{alive[0], POLLIN, 0};
+  ASSERT_EQ(::poll(&line, 1, 10'000), 1) << "still there after ten seconds";
+  EXPECT_FALSE(get(alive[0], &started, 1));
+  ::close(alive[0]);
 }
 
 #if !defined(__SANITIZE_ADDRESS__)

@@ -30,7 +30,7 @@ constexpr float least_turn = 0.1f;
 constexpr float most_turn = 0.2f;
 
 // Whether the pixel has the lines on opposite sides.
-bool is_between(const Line& a, const Line& b) {
+bool are_opposite(const Line& a, const Line& b) {
   return a.distance * b.distance * (a.nx * b.nx + a.ny * b.ny) < 0;
 }
 
@@ -55,35 +55,54 @@ void Refiner::find_crossings(CrossingLists& c, bool may_bend, Work& work, RunSta
   work.flags.resize(c.count + CrossingLists::beyond);
   auto* nearness = reinterpret_cast<Nearness*>(work.flags.data());
   steps().see_nearness(c, edges.lists(), reach, farthest, nearness);
-  std::size_t kept = 0;
+  // What becomes of a pixel is by chance: lists instead of branches.
+  std::size_t kept = 0, unclear = 0, bent = 0, between = 0;
+  const std::size_t room = c.count + 1;
+  if (work.chosen.size() < 4 * room) work.chosen.resize(8 * room);
+  std::uint32_t* const to_kept = work.chosen.data();
+  std::uint32_t *const to_unclear = to_kept + room, *const to_bent = to_unclear + room,
+                       *const to_between = to_bent + room;
+  const float farthest_kept = may_bend ? farthest_bent(reach) : 0;
   for (std::size_t i = 0; i < c.count; ++i) {
-    bool is_kept = nearness[i] == Nearness::one_edge;
-    const float nearest = std::abs(edges[0][i]);
-    const bool is_second_near = std::abs(edges[3][i]) < farthest;
-    if (c.hidden[i] != 0) {
-      // The other edge may be seen from beyond the crease only.
-      is_kept = nearest < reach && !is_second_near;
-      if (nearest < reach && is_second_near)
-        work.unclear.push_back({c.pixel(i), {line_of(edges, 0, i), line_of(edges, 1, i)}});
-    } else if (nearness[i] == Nearness::unclear) {
-      if (may_bend && !(std::abs(edges[3][i]) < reach))
-        work.bent.push_back({c.pixel(i)});
-      else
-        work.unclear.push_back({c.pixel(i), {line_of(edges, 0, i), line_of(edges, 1, i)}});
-    } else if (nearest >= reach && is_second_near && c.unseen[i] == 0 &&
-               is_between(line_of(edges, 0, i), line_of(edges, 1, i))) {
-      work.between.push_back(c.pixel(i));
-      is_kept = false;
-    } else if (may_bend && nearness[i] == Nearness::out_of_reach) {
-      is_kept = nearest < farthest_bent(reach);
-      // What is no circle stays out of reach.
-      if (!is_kept && c.enclosed[i] != 0) work.bent.push_back({c.pixel(i), true, out_of_reach});
-    }
-    // Most are out of reach or not by chance: no branch.
-    c.x[kept] = c.x[i], c.y[kept] = c.y[i];
-    c.distance[kept] = edges[0][i], c.nx[kept] = edges[1][i], c.ny[kept] = edges[2][i];
-    c.hidden[kept] = c.hidden[i], c.unseen[kept] = c.unseen[i], c.enclosed[kept] = c.enclosed[i];
+    const float nearest = std::abs(edges[0][i]), second = std::abs(edges[3][i]);
+    const bool is_near = nearest < reach, is_second_near = second < farthest;
+    const bool is_hidden = c.hidden[i] != 0, is_unclear = nearness[i] == Nearness::unclear;
+    const bool may_turn = is_unclear & may_bend & !(second < reach);
+    const bool is_far = !(is_hidden | is_unclear);
+    const bool is_between = is_far & (nearest >= reach) & is_second_near & (c.unseen[i] == 0) &
+                            are_opposite(line_of(edges, 0, i), line_of(edges, 1, i));
+    const bool is_out = nearness[i] == Nearness::out_of_reach;
+    const bool reaches = may_bend & is_out ? nearest < farthest_kept : is_far & !is_out;
+    // The other edge may be seen from beyond the crease only.
+    const bool is_kept = is_hidden ? is_near & !is_second_near : is_far & !is_between & reaches;
+    to_unclear[unclear] = static_cast<std::uint32_t>(i);
+    unclear += is_hidden ? is_near & is_second_near : is_unclear & !may_turn;
+    to_bent[bent] = static_cast<std::uint32_t>(i);
+    // What is no circle stays out of reach.
+    const bool is_enclosed = may_bend & is_out & is_far & !is_between & !is_kept;
+    bent += is_hidden ? false : (may_turn | (is_enclosed & (c.enclosed[i] != 0)));
+    to_between[between] = static_cast<std::uint32_t>(i);
+    between += is_between;
+    to_kept[kept] = static_cast<std::uint32_t>(i);
     kept += is_kept;
+  }
+  for (std::size_t k = 0; k < unclear; ++k) {
+    const std::size_t i = to_unclear[k];
+    work.unclear.push_back({c.pixel(i), {line_of(edges, 0, i), line_of(edges, 1, i)}});
+  }
+  for (std::size_t k = 0; k < bent; ++k) {
+    const std::size_t i = to_bent[k];
+    if (nearness[i] == Nearness::unclear)
+      work.bent.push_back({c.pixel(i)});
+    else
+      work.bent.push_back({c.pixel(i), true, out_of_reach});
+  }
+  for (std::size_t k = 0; k < between; ++k) work.between.push_back(c.pixel(to_between[k]));
+  for (std::size_t k = 0; k < kept; ++k) {
+    const std::size_t i = to_kept[k];
+    c.x[k] = c.x[i], c.y[k] = c.y[i];
+    c.distance[k] = edges[0][i], c.nx[k] = edges[1][i], c.ny[k] = edges[2][i];
+    c.hidden[k] = c.hidden[i], c.unseen[k] = c.unseen[i], c.enclosed[k] = c.enclosed[i];
   }
   c.count = kept;
 }

@@ -25,6 +25,15 @@ struct Summary {
   float *sums, *lows, *highs;
 };
 
+// From and to, of pixel after pixel.
+struct Ranges {
+  const float *lows, *highs;
+};
+// What becomes of pixels by some samples of theirs: 0 is no.
+struct Verdict {
+  std::int32_t *more, *uneven;
+};
+
 // Lists may be read and written up to CrossingLists::beyond behind their ends.
 struct Steps {
   // Writes the pixels that find_edge_pixels() wants and gives their number; for a reach of 1 and 2.
@@ -49,6 +58,14 @@ struct Steps {
   // The middles of the sides that the normals point to, then those of the others.
   void (*find_sides)(const CrossingLists& crossings, double* x, double* y);
 
+  // Of an output: whether some of what its samples are, `seen`, can be told from all that is
+  // `known` (asked where `asks` is -1), and whether a part of what it spreads over can be seen. Adds
+  // to the verdict.
+  void (*judge)(Ranges seen, Ranges known, const std::int32_t* asks, Ranges spread, float parts,
+                std::size_t count, Verdict verdict);
+  // `each` places at these offsets from one.
+  void (*place)(double x, double y, const float* offset_x, const float* offset_y, std::size_t each,
+                double* to_x, double* to_y);
   // values[k * each + i], i < each: those of number k.
   void (*summarise)(const float* values, std::size_t count, std::size_t each,
                     const Summary& summary);

@@ -16,6 +16,8 @@ const Steps& steps_for_any() {
                                   look_again<4>,
                                   bend_shares<4>,
                                   find_sides,
+                                  judge<4>,
+                                  place,
                                   summarise};
   return these;
 }

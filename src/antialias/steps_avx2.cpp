@@ -16,6 +16,8 @@ const Steps& steps_for_avx2() {
                                   look_again<8>,
                                   bend_shares<8>,
                                   find_sides,
+                                  judge<8>,
+                                  place,
                                   summarise};
   return these;
 }

@@ -16,6 +16,8 @@ const Steps& steps_for_avx512() {
                                   look_again<16>,
                                   bend_shares<16>,
                                   find_sides,
+                                  judge<16>,
+                                  place,
                                   summarise};
   return these;
 }

@@ -8,6 +8,7 @@
 #include "antialias/fine.h"
 #include "antialias/seams.h"
 #include "antialias/searches.h"
+#include "antialias/sink.h"
 #include "ir/expectations.h"
 #include "passes/passes.h"
 #include "passes/slice.h"
@@ -130,6 +131,7 @@ Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
   const std::size_t own = module.main().values.size();
   std::vector<bool> expected = find_expected(module);
   const std::vector<Value> seams = add_seams(module);
+  sink_into_branches(module);
   // A picture is the same whatever part of a ray the prepass leaves out, and so are its edges.
   std::vector<bool> guides(module.main().values.size());
   find_guides(module, module.main().body, guides);

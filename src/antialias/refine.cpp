@@ -62,15 +62,17 @@ void Refiner::find_crossings(CrossingLists& c, bool may_bend, Work& work, RunSta
   std::uint32_t* const to_kept = work.chosen.data();
   std::uint32_t *const to_unclear = to_kept + room, *const to_bent = to_unclear + room,
                        *const to_between = to_bent + room;
+  const float *const distances = edges[0], *const seconds = edges[3];
   const float farthest_kept = may_bend ? farthest_bent(reach) : 0;
   for (std::size_t i = 0; i < c.count; ++i) {
-    const float nearest = std::abs(edges[0][i]), second = std::abs(edges[3][i]);
+    const float nearest = std::abs(distances[i]), second = std::abs(seconds[i]);
     const bool is_near = nearest < reach, is_second_near = second < farthest;
     const bool is_hidden = c.hidden[i] != 0, is_unclear = nearness[i] == Nearness::unclear;
     const bool may_turn = is_unclear & may_bend & !(second < reach);
     const bool is_far = !(is_hidden | is_unclear);
-    const bool is_between = is_far & (nearest >= reach) & is_second_near & (c.unseen[i] == 0) &
-                            are_opposite(line_of(edges, 0, i), line_of(edges, 1, i));
+    const bool may_part = is_far & (nearest >= reach) & is_second_near & (c.unseen[i] == 0);
+    const bool is_between =
+        may_part && are_opposite(line_of(edges, 0, i), line_of(edges, 1, i));
     const bool is_out = nearness[i] == Nearness::out_of_reach;
     const bool reaches = may_bend & is_out ? nearest < farthest_kept : is_far & !is_out;
     // The other edge may be seen from beyond the crease only.

@@ -79,12 +79,11 @@ struct Work {
   std::vector<Pixel> between;  // between the bends of a steep ramp
   std::vector<Pixel> fine;     // memory of find_fine_pixels()
   std::vector<Pixel> noisy;    // fine, and no edge is near
-  Places places;    // where the next run is to be
-  Results results;  // of the last run
+  Places places;               // where the next run is to be
+  Results results;             // of the last run
   Scratch scratch;
   std::vector<std::pair<const PlaceRunner*, Planes>> inputs;
   std::vector<std::int32_t> flags;
-  std::vector<std::uint32_t> chosen;  // numbers in lists, those of one lot behind the other's
   std::vector<float> sums, lows, highs;
   Settling settling;
 };

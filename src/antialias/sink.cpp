@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "antialias/decisions.h"
 #include "passes/rewrite.h"
+#include "passes/slice.h"
 
 namespace pse::antialias {
 namespace {
@@ -20,9 +22,37 @@ bool may_move(const Instruction& in) {
          !passes::has_regions(in.op) && !in.results.empty();
 }
 
+bool is_step(Cut cut) { return cut == Cut::whole || cut == Cut::half; }
+
+template <class Visit>
+void for_each(const Region& region, const Visit& visit) {
+  for (const Instruction& in : region.body) {
+    visit(in);
+    for (const Region& inner : in.regions) for_each(inner, visit);
+  }
+}
+
+// What a jump is computed from; not that of steps which only choose a random number.
+std::vector<bool> find_deciding(const Function& function) {
+  std::vector<bool> of_all, deciding;
+  for (std::vector<bool>* found : {&of_all, &deciding}) {
+    passes::Slice slice(function, false);
+    for_each(function.body, [&](const Instruction& in) {
+      const Cut cut = cut_of(in.op);
+      if (cut == Cut::none || cut == Cut::kink) return;
+      if (found == &deciding && is_step(cut) && !of_all[in.result()]) return;
+      for (const Value operand : in.operands) slice.need(operand);
+    });
+    slice.run();
+    for (Value value = 0; value < function.values.size(); ++value) found->push_back(slice[value]);
+  }
+  return deciding;
+}
+
 class Sinking {
  public:
-  explicit Sinking(const Function& function) : users_(function.values.size()) {}
+  explicit Sinking(const Function& function)
+      : users_(function.values.size()), deciding_(find_deciding(function)) {}
 
   void walk(Region& region) {
     std::vector<Instruction>& body = region.body;
@@ -33,7 +63,7 @@ class Sinking {
     std::vector<User> places(body.size());
     for (std::size_t i = body.size(); i-- > 0;) {
       const Instruction& in = body[i];
-      const User place = may_move(in) ? user_of(in) : several;
+      const User place = may_move(in) && !decides(in) ? user_of(in) : several;
       moves[i] = place.in != none && place.in != several.in;
       places[i] = place;
       for (const Value value : in.operands) use(value, moves[i] ? place : several);
@@ -53,6 +83,11 @@ class Sinking {
     bool operator==(const User&) const = default;
   };
   static constexpr User several{none - 1, 0};
+
+  bool decides(const Instruction& in) const {
+    const Cut cut = cut_of(in.op);
+    return cut == Cut::compare || (cut != Cut::none && deciding_[in.result()]);
+  }
 
   void use(Value value, const User& by) {
     User& user = users_[value];
@@ -85,6 +120,7 @@ class Sinking {
   }
 
   std::vector<User> users_;  // within the region that is walked
+  std::vector<bool> deciding_;
 };
 
 }  // namespace

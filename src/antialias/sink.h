@@ -8,7 +8,9 @@
 namespace pse::antialias {
 
 // Moves instructions of the main function without effects into the branches that alone use their
-// results. Values keep their names, and the module its meaning bit for bit.
+// results; but no cut that decides otherwise than by a random number, since where such a one falls
+// differently there may be something that no sample has met. Values keep their names, and the
+// module its meaning bit for bit.
 void sink_into_branches(ir::Module& module);
 
 }  // namespace pse::antialias

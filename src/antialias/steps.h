@@ -19,6 +19,14 @@ struct SearchRoom {
 
 // What the program of edges said at the crossings' pixels becomes of them; see refine.cpp.
 enum class Nearness : std::int32_t { out_of_reach, one_edge, unclear };
+// Then, as bits of which one is set at most: it has one edge to follow, it is unclear, its edge may
+// be a circle's, it lies between the bends of a ramp.
+inline constexpr std::int32_t to_follow = 1, to_sample = 2, to_fit = 4, to_smooth = 8;
+// Of the kernel, of a second edge that matters, and of an edge that bends, from inside; 0: none
+// does.
+struct Reaches {
+  float kernel, second, bent;
+};
 
 // Sum, least and largest of numbers.
 struct Summary {
@@ -48,6 +56,9 @@ struct Steps {
   // edge within `farthest`, are two within `reach` of the kernel, do they explain every jump?
   void (*see_nearness)(const CrossingLists& crossings, const float* const* lines, float reach,
                        float farthest, Nearness* nearness);
+  // The fates of the same pixels.
+  void (*find_fates)(const CrossingLists& crossings, const float* const* lines,
+                     const Nearness* nearness, const Reaches& reaches, std::int32_t* fates);
   // From where the crossings' edges are looked at again: a little along them, on their far sides.
   void (*find_second_looks)(const CrossingLists& crossings, float reach, double* x, double* y);
   // Distances, bends, others and is_one from the edges that were seen there.
@@ -59,8 +70,8 @@ struct Steps {
   void (*find_sides)(const CrossingLists& crossings, double* x, double* y);
 
   // Of an output: whether some of what its samples are, `seen`, can be told from all that is
-  // `known` (asked where `asks` is -1), and whether a part of what it spreads over can be seen. Adds
-  // to the verdict.
+  // `known` (asked where `asks` is -1), and whether a part of what it spreads over can be seen.
+  // Adds to the verdict.
   void (*judge)(Ranges seen, Ranges known, const std::int32_t* asks, Ranges spread, float parts,
                 std::size_t count, Verdict verdict);
   // `each` places at these offsets from one.

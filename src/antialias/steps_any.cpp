@@ -12,6 +12,7 @@ const Steps& steps_for_any() {
                                   find_fine<8>,
                                   smooth<8>,
                                   see_nearness<4>,
+                                  find_fates<4>,
                                   find_second_looks,
                                   look_again<4>,
                                   bend_shares<4>,

@@ -12,6 +12,7 @@ const Steps& steps_for_avx2() {
                                   find_fine<8>,
                                   smooth<8>,
                                   see_nearness<8>,
+                                  find_fates<8>,
                                   find_second_looks,
                                   look_again<8>,
                                   bend_shares<8>,

@@ -12,6 +12,7 @@ const Steps& steps_for_avx512() {
                                   find_fine<16>,
                                   smooth<16>,
                                   see_nearness<16>,
+                                  find_fates<16>,
                                   find_second_looks,
                                   look_again<16>,
                                   bend_shares<16>,

@@ -44,9 +44,8 @@ TEST(Path, OutputsOfRandomProgramsKeepTheirBitsAndEdgesOfAllAreValid) {
     for (int k = 0; k < 3; ++k) {
       std::vector<float> inputs;
       for (std::size_t i = 0; i < plain.inputs.size(); ++i)
-        inputs.push_back(static_cast<float>((seed * 7 + k * 13 + static_cast<int>(i) * 5) % 23) /
-                             7.0f -
-                         1.3f);
+        inputs.push_back(
+            static_cast<float>((seed * 7 + k * 13 + static_cast<int>(i) * 5) % 23) / 7.0f - 1.3f);
       const auto a = ir::interpret(plain, plain.entry, inputs, nullptr, 100000);
       const auto b = ir::interpret(path, path.entry, inputs, nullptr, 100000);
       ASSERT_EQ(static_cast<int>(a.outcome.end), static_cast<int>(b.outcome.end));
@@ -96,7 +95,8 @@ TEST(Path, DiffersWhereAnOutcomeDiffers) {
   EXPECT_EQ(path_at("c = floor(x) + Noise(x, x)\n", 1.2f),
             path_at("c = floor(x) + Noise(x, x)\n", 1.7f));
   // Outcomes that swap between turns are another path.
-  const char* swapped = "c = 0\nfor i in [1 .. 2]\n    if (x - 1.5) * (i - 1.5) > 0\n        c += i\n";
+  const char* swapped =
+      "c = 0\nfor i in [1 .. 2]\n    if (x - 1.5) * (i - 1.5) > 0\n        c += i\n";
   EXPECT_NE(path_at(swapped, 1), path_at(swapped, 2));
 }
 
@@ -128,13 +128,13 @@ TEST(Path, SearchesCountByWhatTheyEndWith) {
 }
 
 TEST(Path, ALoopWhoseTurnsAreCountedIsNoSearch) {
-  for (const char* text : {"c = x\nwhile c < 9\n    c += 1\n",
-                           "z = x\nc = 0\nwhile z < 9\n    z *= 1.5\n    c += 1\n",
-                           "z = x\nc = 0\nfor i in [1 .. 50]\n    z *= 1.5\n    c = i\n"
-                           "    if z > 9 break\n",
-                           // What stands in an array is not among what it ends with.
-                           "_a = array(20)\n_z = x\n_i = 0\nwhile _z < 9\n    _i += 1\n"
-                           "    _a[_i] = _z\n    _z *= 1.5\nc = _a[2] + _z\n"}) {
+  for (const char* text :
+       {"c = x\nwhile c < 9\n    c += 1\n", "z = x\nc = 0\nwhile z < 9\n    z *= 1.5\n    c += 1\n",
+        "z = x\nc = 0\nfor i in [1 .. 50]\n    z *= 1.5\n    c = i\n"
+        "    if z > 9 break\n",
+        // What stands in an array is not among what it ends with.
+        "_a = array(20)\n_z = x\n_i = 0\nwhile _z < 9\n    _i += 1\n"
+        "    _a[_i] = _z\n    _z *= 1.5\nc = _a[2] + _z\n"}) {
     EXPECT_EQ(way_at(text, 2.5f).ends, 0) << text;
     EXPECT_NE(path_at(text, 2.5f), path_at(text, 6.5f)) << text;
   }
@@ -159,6 +159,39 @@ TEST(Path, BendsLeaveTheBitsOfJumps) {
   EXPECT_EQ(bits("c = max(x, 1)\n", 0), bits("c = max(x, 1)\n", 2));
   EXPECT_NE(path_at("c = max(x, 1)\n", 0), path_at("c = max(x, 1)\n", 2));
   EXPECT_NE(bits("c = select(x < 1, 2, 3)\n", 0), bits("c = select(x < 1, 2, 3)\n", 2));
+}
+
+// What only a jump is computed from is seen by that jump alone; the same number shown is a bend.
+TEST(Path, BendsCountOnlyWhereAnOutputShowsThem) {
+  for (const char* text :
+       {"c = floor(max(x, 1) / 4)\n", "_m = min(x, 1)\nc = 0\nif _m > 0.7\n    c = 1\n",
+        "c = mod(floor(min(x, 1) / 8 + 3), 2)\n"})
+    EXPECT_EQ(path_at(text, 0.8f), path_at(text, 1.2f)) << text;
+  EXPECT_EQ(path_at("c = select(min(x, 1) < 0.5, 2, 3)\n", 0.8f),
+            path_at("c = select(min(x, 1) < 0.5, 2, 3)\n", 1.2f));
+  EXPECT_NE(path_at("c = select(min(x, 1) < 0.5, 2, 3)\n", 0.4f),
+            path_at("c = select(min(x, 1) < 0.5, 2, 3)\n", 0.6f));
+  for (const char* text : {"_m = min(x, 1)\nc = select(_m < 0.5, _m, 3)\n",
+                           "c = 0\nif min(x, 1) > 0.7\n    c = x\nc += max(x, 1)\n",
+                           "_a = array(3)\n_a[1] = min(x, 1)\nc = _a[1]\n",
+                           "_m = min(x, 1)\nfor i in [1 .. 5]\n    _m = _m * _m\nc = _m\n"})
+    EXPECT_NE(path_at(text, 0.8f), path_at(text, 1.2f)) << text;
+}
+
+// A step that only one branch looks at, to choose a random number, is none elsewhere. One that
+// decides there is, for the branch may lie between two samples.
+TEST(Path, WhatOneBranchUsesDecidesThere) {
+  const char* random =
+      "_s = 1 + floor(x / 4)\n_k = floor(8 * x * _s)\nc = 0\nif x > 5\n    c = hash(_k, _s)\n";
+  EXPECT_EQ(path_at(random, 0.1f), path_at(random, 4.9f));
+  EXPECT_NE(path_at(random, 5.1f), path_at(random, 5.9f));
+  EXPECT_NE(path_at(random, 4.9f), path_at(random, 5.1f));
+  for (const char* text :
+       {"_k = floor(8 * x)\nc = 0\nif x > 5\n    c = mod(_k, 3) > 0.5 ? 1 : 0\n",
+        "_k = floor(8 * x)\nc = hash(_k)\nif x > 5\n    c += hash(_k, 1)\n",
+        "_k = floor(8 * x)\nc = 0\nif x > 5\n    c = hash(_k)\nelse\n    c = hash(_k, 2)\n",
+        "_b = x < 2\nc = 0\nif x > 5 and _b\n    c = 1\n"})
+    EXPECT_NE(path_at(text, 0.1f), path_at(text, 4.9f)) << text;
 }
 
 }  // namespace

@@ -170,8 +170,7 @@ Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
   for_each(main.body, found, [&](const Instruction& in, bool in_loop) {
     const Cut cut = cut_of(in.op);
     if (cut == Cut::none || cut == Cut::compare || !differs(in)) return;
-    const bool is_unshown =
-        cut == Cut::kink && found.forks[in.result()] && !shown[in.result()];
+    const bool is_unshown = cut == Cut::kink && found.forks[in.result()] && !shown[in.result()];
     if (is_unshown) found.forks[in.result()] = false;
     if (in.op == Op::fabs || is_unshown) found.bends[in.result()] = bends[in.result()];
     const bool may_crease = in.op == Op::fabs || cut != Cut::kink;

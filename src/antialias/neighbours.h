@@ -213,9 +213,8 @@ class Search {
     // As bits, since NaN is the largest of these.
     Answers farthest{};
     for (const Step& step : steps_)
-      farthest =
-          larger(farthest, larger(bits(size(load<Values>(plane + here + step.by) - value)),
-                                  bits(size(load<Values>(plane + here - step.by) - value))));
+      farthest = larger(farthest, larger(bits(size(load<Values>(plane + here + step.by) - value)),
+                                         bits(size(load<Values>(plane + here - step.by) - value))));
     Answers far = farthest > bits(least);
     // Of what is known to be an edge there may be more to tell.
     if (ends_ == nullptr) far &= other;

@@ -51,8 +51,7 @@ void judge(Ranges seen, Ranges known, const std::int32_t* asks, Ranges spread, f
     const Answers exceeds = ((low < from) & differs(low, from)) | ((high > to) & differs(high, to));
     const V least = load<V>(spread.lows + i), most = load<V>(spread.highs + i);
     const Answers is_uneven = differs(least, V(least + (most - least) / parts));
-    store(verdict.more + i,
-          load<Answers>(verdict.more + i) | (exceeds & load<Answers>(asks + i)));
+    store(verdict.more + i, load<Answers>(verdict.more + i) | (exceeds & load<Answers>(asks + i)));
     store(verdict.uneven + i, load<Answers>(verdict.uneven + i) | is_uneven);
   }
 }

@@ -223,15 +223,13 @@ void Refiner::settle(const Tile& tile, Refined& result, Counts& counts, Work& wo
       const Summary all = summaries(work, outputs_, number);
       for (std::size_t o = 0; o < outputs_; ++o) {
         const std::size_t at = o * number;
-        steps().summarise(results[o], number, each,
-                          {all.sums + at, all.lows + at, all.highs + at});
+        steps().summarise(results[o], number, each, {all.sums + at, all.lows + at, all.highs + at});
       }
       judge(tile, std::span(of).subspan(begin, number), first, last, work);
       for (std::size_t k = 0; k < number; ++k) {
         if (s.more[k] == 0) continue;
         const std::size_t i = of[begin + k];
-        const std::uint32_t most =
-            unclear[i].pixel.silhouette ? count : std::max(look, count / 2);
+        const std::uint32_t most = unclear[i].pixel.silhouette ? count : std::max(look, count / 2);
         const bool is_uneven = s.uneven[k] != 0;
         if (is_uneven && first == 0 && last == look &&
             by_regions(unclear[i], look, results, k * each, values))

@@ -2,7 +2,8 @@
 // run over a picture with clean edges at about one sample per pixel. The table of contents:
 //
 //   decisions  where the program's conditionals are, and what has none and jumps (seams); loops
-//              that march (searches); what is chance and none of them (dither)
+//              that march (searches); what is chance and none of them (dither); what decides for
+//              one branch alone (sink)
 //   path       the program with one more output: which way each sample takes; and where it marches
 //              by a loop, one of what that ended with
 //   fine       noise that is finer than a pixel

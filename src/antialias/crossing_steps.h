@@ -108,6 +108,51 @@ void see_nearness(const CrossingLists& c, const float* const* lines, float reach
   }
 }
 
+template <std::size_t lanes>
+void find_fates(const CrossingLists& c, const float* const* lines, const Nearness* nearness,
+                const Reaches& reaches, std::int32_t* fates) {
+  using V = typename LanesOf<lanes>::Floats;
+  using Answers = AnswersOf<V>;
+  constexpr auto out = static_cast<std::int32_t>(Nearness::out_of_reach);
+  constexpr auto unclear = static_cast<std::int32_t>(Nearness::unclear);
+  const Answers may_bend = Answers{} - (reaches.bent > 0 ? 1 : 0);
+  for (std::size_t i = 0; i < c.count; i += lanes) {
+    const V nearest = size(load<V>(lines[0] + i)), second = size(load<V>(lines[3] + i));
+    const Answers seen = load<Answers>(nearness + i);
+    const Answers is_hidden = load<Answers>(c.hidden + i) != 0, is_near = nearest < reaches.kernel;
+    const Answers is_second_near = second < reaches.second;
+    const Answers may_turn = (seen == unclear) & may_bend & ~(second < reaches.kernel);
+    const Answers is_plain = ~(is_hidden | (seen == unclear));
+
+    // On opposite sides of the pixel. Where no program ran there is no normal, and no line.
+    V distance[2], nx[2], ny[2];
+    for (std::size_t k = 0; k < 2; ++k) {
+      nx[k] = load<V>(lines[3 * k + 1] + i), ny[k] = load<V>(lines[3 * k + 2] + i);
+      const Answers is_none = (nx[k] == 0) & (ny[k] == 0);
+      distance[k] = choose(is_none, V{} + no_edge, load<V>(lines[3 * k] + i));
+      nx[k] = choose(is_none, V{} + 1, nx[k]);
+    }
+    const V product = distance[0] * distance[1] * (nx[0] * nx[1] + ny[0] * ny[1]);
+    const Answers is_between = is_plain & (nearest >= reaches.kernel) & is_second_near &
+                               (load<Answers>(c.unseen + i) == 0) & (product < 0);
+
+    const Answers may_be_bent = may_bend & (seen == out);
+    const Answers reaches_pixel =
+        (may_be_bent & (nearest < reaches.bent)) | (~may_be_bent & (seen != out));
+    // The other edge may be seen from beyond the crease only.
+    const Answers is_followed =
+        (is_hidden & is_near & ~is_second_near) | (is_plain & ~is_between & reaches_pixel);
+    const Answers is_sampled =
+        (is_hidden & is_near & is_second_near) | (~is_hidden & (seen == unclear) & ~may_turn);
+    // What is enclosed and no circle stays out of reach.
+    const Answers is_enclosed =
+        is_plain & may_be_bent & ~is_between & ~is_followed & (load<Answers>(c.enclosed + i) != 0);
+    const Answers is_fitted = (~is_hidden & may_turn) | is_enclosed;
+    store(fates + i, (is_followed & to_follow) | (is_sampled & to_sample) | (is_fitted & to_fit) |
+                         (is_between & to_smooth));
+  }
+}
+
 // A loop over two lists of places, each number by itself.
 inline void find_second_looks(const CrossingLists& c, float reach, double* to_x, double* to_y) {
   const float s = along * reach;

@@ -8,6 +8,7 @@
 #include "antialias/fine.h"
 #include "antialias/seams.h"
 #include "antialias/searches.h"
+#include "antialias/sink.h"
 #include "ir/expectations.h"
 #include "passes/passes.h"
 #include "passes/slice.h"
@@ -130,6 +131,7 @@ Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
   const std::size_t own = module.main().values.size();
   std::vector<bool> expected = find_expected(module);
   const std::vector<Value> seams = add_seams(module);
+  sink_into_branches(module);
   // A picture is the same whatever part of a ray the prepass leaves out, and so are its edges.
   std::vector<bool> guides(module.main().values.size());
   find_guides(module, module.main().body, guides);
@@ -141,7 +143,7 @@ Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
   found.forks.resize(main.values.size());
   found.bends.resize(main.values.size());
   found.creases.resize(main.values.size());
-  passes::Slice bends(main), lines(main, false);
+  passes::Slice bends(main), lines(main, false), shown(main);
   // Dither is no edge: it decides anew in each pixel, and a ray marcher with a jittered step does
   // so all along its way.
   found.dithered = find_dither(module);
@@ -155,21 +157,27 @@ Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
     if (cut == Cut::none || in.op == Op::fabs || !differs(in)) return;
     // Of what lays a seam open the seam alone is a decision.
     if (in.result() >= own && std::ranges::find(seams, in.result()) == seams.end()) return;
-    found.forks[in.result()] = found.any = true;
+    found.forks[in.result()] = true;
     if (cut == Cut::kink) return;
     found.any_jump = true;
+    shown.end_at(in.result());
     for (const Value operand : in.operands) bends.need(operand), lines.need(operand);
   });
+  for (const Value value : main.body.yields) shown.need(value);
   bends.run();
   lines.run();
+  shown.run();
   for_each(main.body, found, [&](const Instruction& in, bool in_loop) {
     const Cut cut = cut_of(in.op);
     if (cut == Cut::none || cut == Cut::compare || !differs(in)) return;
-    if (in.op == Op::fabs) found.bends[in.result()] = bends[in.result()];
+    const bool is_unshown = cut == Cut::kink && found.forks[in.result()] && !shown[in.result()];
+    if (is_unshown) found.forks[in.result()] = false;
+    if (in.op == Op::fabs || is_unshown) found.bends[in.result()] = bends[in.result()];
     const bool may_crease = in.op == Op::fabs || cut != Cut::kink;
     found.creases[in.result()] =
         may_crease && lines[in.result()] && !(in_loop && is_of_noise(module, in.operands[0]));
   });
+  found.any = std::ranges::find(found.forks, true) != found.forks.end();
   find_searches(main, found);
   found.noises = find_noise(module, found, changes);
   found.any_noise =

@@ -27,8 +27,10 @@ std::vector<bool> defined_values(const ir::Function& function);
 
 // The cuts of the main function that differ from sample to sample, by the value that they give.
 struct Decisions {
-  std::vector<bool> forks;  // jumps, and min and max: a steep clamp is an edge to the eye
-  std::vector<bool> bends;  // abs where some jump depends on it: it bends an edge
+  // Jumps, and min and max that an output shows otherwise than by a jump: a steep clamp is an edge
+  // to the eye.
+  std::vector<bool> forks;
+  std::vector<bool> bends;  // abs, and other min and max, where a jump depends on it: edges bend
   // Of these and of steps, those that a jump is computed from: a line that is thinner than a pixel
   // may lie on one. None that fold the octaves of a sum of noise, or that only choose a random
   // number.

@@ -87,28 +87,7 @@ class Search {
       const auto first = static_cast<std::ptrdiff_t>(tile_.at(tile_.rect.x0, y));
       for (std::ptrdiff_t i = 0; i < width; i += at_once, ++group) {
         if (changes_around(group) == 0) continue;
-        const Seen seen = look(first + i);
-        std::uint32_t wanted = mask_of(seen.edge | seen.narrow | seen.hidden | seen.unseen);
-        if (width - i < at_once) wanted &= (1u << (width - i)) - 1;
-        if (wanted == 0) continue;
-        const std::uint32_t edge = mask_of(seen.edge), untold = mask_of(seen.untold & seen.edge),
-                            hidden = mask_of(seen.hidden), silhouette = mask_of(seen.silhouette),
-                            unseen = mask_of(seen.unseen), enclosed = mask_of(seen.enclosed);
-        std::int32_t jumps[count];
-        store(jumps, seen.jumps);
-        for (; wanted != 0; wanted &= wanted - 1) {
-          const auto k = __builtin_ctz(wanted);
-          const auto has = [&](std::uint32_t mask) { return (mask >> k & 1) != 0; };
-          *next++ = {.x = tile_.rect.x0 + static_cast<int>(i) + k,
-                     .y = y,
-                     .silhouette = has(silhouette),
-                     .narrow = !has(edge),
-                     .hidden = has(hidden),
-                     .unseen = has(unseen),
-                     .enclosed = has(enclosed),
-                     .untold = has(untold),
-                     .jumps = static_cast<std::uint8_t>(jumps[k])};
-        }
+        next = list(look(first + i), static_cast<int>(i), y, next);
       }
     }
     return static_cast<std::size_t>(next - room_.found);
@@ -117,6 +96,29 @@ class Search {
  private:
   static constexpr std::ptrdiff_t at_once = count;
   static constexpr int directions = 2 * reach * (reach + 1);
+
+  // Writes those of a group, columns `left` of the tile and on, that are wanted. Gives where the
+  // next are to be written.
+  [[gnu::always_inline]] Pixel* list(const Seen& seen, int left, int y, Pixel* next) const {
+    std::uint32_t wanted = mask_of(seen.edge | seen.narrow | seen.hidden | seen.unseen);
+    const int width = tile_.rect.width() - left;
+    if (width < static_cast<int>(at_once)) wanted &= (1u << width) - 1;
+    if (wanted == 0) return next;
+    // The bytes behind a pixel's place, in two halves.
+    const Answers flags[] = {
+        (seen.silhouette & 1) | (~seen.edge & 1 << 8) | (seen.hidden & 1 << 16) |
+            (seen.unseen & 1 << 24),
+        (seen.enclosed & 1) | (seen.untold & seen.edge & 1 << 8) | (seen.jumps << 16)};
+    std::int32_t first[count], second[count];
+    store(first, flags[0]), store(second, flags[1]);
+    for (; wanted != 0; wanted &= wanted - 1) {
+      const auto k = __builtin_ctz(wanted);
+      const std::int32_t bytes[] = {tile_.rect.x0 + left + k, y, first[k], second[k]};
+      static_assert(sizeof bytes == sizeof *next);
+      std::memcpy(next++, bytes, sizeof bytes);
+    }
+    return next;
+  }
 
   // Whether the searches of samples end in different places.
   [[gnu::always_inline]] Answers end_apart(std::ptrdiff_t here, std::ptrdiff_t there) const {
@@ -161,56 +163,72 @@ class Search {
     return change;
   }
 
+  // Where the neighbours `to` before and behind go other ways: by the path alone.
+  struct Ways {
+    Answers ahead[directions], back[directions];
+  };
+  [[gnu::always_inline]] Ways ways(std::ptrdiff_t here) const {
+    const Answers way = load<Answers>(path_ + here);
+    Ways found;
+    for (int d = 0; d < directions; ++d) {
+      found.ahead[d] = load<Answers>(path_ + here + steps_[d].by) != way;
+      found.back[d] = load<Answers>(path_ + here - steps_[d].by) != way;
+    }
+    return found;
+  }
+
   // At pixels in a row; what is said of those behind the row's end has no meaning.
   [[gnu::always_inline]] Seen look(std::ptrdiff_t here) const {
     Seen seen;
-    for (const std::ptrdiff_t step : {std::ptrdiff_t{1}, width_}) {
-      see_leap(seen, here, here + step);
-      see_leap(seen, here, here - step);
+    const Ways to = ways(here);
+    Answers other{};
+    for (int d = 0; d < directions; ++d) other |= to.ahead[d] | to.back[d];
+    // Where a search ends is no way of its own.
+    if (ends_ != nullptr || any(other)) {
+      for (const std::ptrdiff_t step : {std::ptrdiff_t{1}, width_}) {
+        see_leap(seen, here, here + step);
+        see_leap(seen, here, here - step);
+      }
+      for (std::size_t o = 0; o < tile_.outputs; ++o)
+        see_jumps(seen, here, to, other, tile_.planes[o]);
+      seen.narrow &= ~seen.edge;
+      seen.hidden &= ~(seen.edge | seen.narrow);
+      if (any(seen.edge)) seen.untold |= is_crowded(here, to, seen.edge);
     }
-    for (std::size_t o = 0; o < tile_.outputs; ++o) see_jumps(seen, here, tile_.planes[o]);
-    seen.narrow &= ~seen.edge;
-    seen.hidden &= ~(seen.edge | seen.narrow);
-    if (bent_ != nullptr) see_bent(seen, here);
-    if (any(seen.edge)) seen.untold |= is_crowded(here);
+    if (bent_ != nullptr) see_bent(seen, here, to, other);
     return seen;
   }
 
   // Where edges bend within the kernel's reach.
-  [[gnu::always_inline]] void see_bent(Seen& seen, std::ptrdiff_t here) const {
-    const Answers way = load<Answers>(path_ + here);
-    Answers other{};
-    for (const Step& to : steps_) {
-      const Answers ahead = load<Answers>(path_ + here + to.by) != way;
-      const Answers back = load<Answers>(path_ + here - to.by) != way;
-      other |= ahead | back;
-      seen.enclosed |= ahead & back & seen.edge;
-    }
+  [[gnu::always_inline]] void see_bent(Seen& seen, std::ptrdiff_t here, const Ways& to,
+                                       Answers other) const {
+    for (int d = 0; d < directions; ++d) seen.enclosed |= to.ahead[d] & to.back[d] & seen.edge;
     seen.unseen |= (load<Values>(bent_ + here) != 0) & ~other;
   }
 
   // Where an output jumps between ways. Most ways through a program end in the same place.
-  [[gnu::always_inline]] void see_jumps(Seen& seen, std::ptrdiff_t here, const float* plane) const {
+  [[gnu::always_inline]] void see_jumps(Seen& seen, std::ptrdiff_t here, const Ways& to,
+                                        Answers other, const float* plane) const {
     const Values value = load<Values>(plane + here), least = least_step_from(value);
     // As bits, since NaN is the largest of these.
     Answers farthest{};
-    for (const Step& to : steps_)
-      farthest = larger(farthest, larger(bits(size(load<Values>(plane + here + to.by) - value)),
-                                         bits(size(load<Values>(plane + here - to.by) - value))));
+    for (const Step& step : steps_)
+      farthest = larger(farthest, larger(bits(size(load<Values>(plane + here + step.by) - value)),
+                                         bits(size(load<Values>(plane + here - step.by) - value))));
     Answers far = farthest > bits(least);
     // Of what is known to be an edge there may be more to tell.
+    if (ends_ == nullptr) far &= other;
     if (ends_ == nullptr && tile_.ids == nullptr) far &= ~seen.edge;
     if (!any(far)) return;
-    for (const Step& to : steps_) see_jumps_along(seen, here, to, plane, least, far);
+    for (int d = 0; d < directions; ++d)
+      see_jumps_along(seen, here, steps_[d], to.ahead[d], to.back[d], plane, least, far);
   }
 
   // To the two neighbours `to` before and behind each of those that are `far` from some neighbour.
   [[gnu::always_inline]] void see_jumps_along(Seen& seen, std::ptrdiff_t here, const Step& to,
-                                              const float* plane, Values least, Answers far) const {
+                                              Answers ahead, Answers back, const float* plane,
+                                              Values least, Answers far) const {
     const std::ptrdiff_t step = to.by;
-    const Answers way = load<Answers>(path_ + here);
-    Answers ahead = load<Answers>(path_ + here + step) != way;
-    Answers back = load<Answers>(path_ + here - step) != way;
     Jumps<Values> ends{};
     if (ends_ != nullptr) {
       ends = jumps(apart(ends_, here, step), apart(ends_, here, -step), Values{} + least_end,
@@ -255,13 +273,15 @@ class Search {
   // Whether too few of the eight pixels around go the same way for one or two edges to part them,
   // and these are not parted by one or two either: a pixel may have a way of its own because its
   // middle is on an edge.
-  [[gnu::always_inline]] Answers is_crowded(std::ptrdiff_t here) const {
+  [[gnu::always_inline]] Answers is_crowded(std::ptrdiff_t here, const Ways& to,
+                                            Answers edge) const {
     constexpr int least_alike = 2;
-    const Answers way = load<Answers>(path_ + here);
-    Answers alike{};
-    for (const std::ptrdiff_t step : {std::ptrdiff_t{1}, width_ - 1, width_, width_ + 1})
-      alike +=
-          (load<Answers>(path_ + here + step) == way) + (load<Answers>(path_ + here - step) == way);
+    // Of these eight, those that go another way.
+    Answers others{};
+    for (int d = 0; d < directions; ++d)
+      if (steps_[d].bit != 0) others += to.ahead[d] + to.back[d];
+    const Answers is_alone_or_nearly = (others < least_alike - 8) & edge;
+    if (!any(is_alone_or_nearly)) return Answers{};
     const std::ptrdiff_t ring[] = {1,  1 + width_,  width_,  width_ - 1,
                                    -1, -1 - width_, -width_, 1 - width_};
     Answers turns{};
@@ -273,7 +293,7 @@ class Search {
     }
     // One that all others are alike around may be in a small disc.
     const Answers is_alone = bent_ == nullptr ? turns == 0 : Answers{};
-    return (alike > -least_alike) & (is_alone | (turns < -4));
+    return is_alone_or_nearly & (is_alone | (turns < -4));
   }
 
   const Tile& tile_;

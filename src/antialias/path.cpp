@@ -40,7 +40,11 @@ struct Way {
 class Paths {
  public:
   Paths(ir::Module& module, const Decisions& decisions, float reach)
-      : module_(module), function_(module.main()), decisions_(decisions), reach_(reach) {}
+      : module_(module),
+        function_(module.main()),
+        decisions_(decisions),
+        bounds_(module, decisions),
+        reach_(reach) {}
 
   bool has_searches() const { return has_searches_; }
 
@@ -101,7 +105,7 @@ class Paths {
   }
 
   Value with_edge(const Emit& emit, const Instruction& decision, Value before) const {
-    return emit.choose(is_near(emit, decision, reach_), emit.number(1), before);
+    return emit.choose(is_near(emit, decision, reach_, bounds_), emit.number(1), before);
   }
 
   Value outcome(const Emit& emit, const Instruction& in, Value path) {
@@ -239,6 +243,7 @@ class Paths {
   const ir::Module& module_;
   Function& function_;
   const Decisions& decisions_;
+  const SlopeBounds bounds_;
   float reach_;
   bool has_searches_ = false;
   std::uint32_t state_ = 1;
@@ -271,11 +276,11 @@ void add_path(ir::Module& module, const Decisions& decisions, float reach) {
   Function& main = module.main();
   std::vector<Instruction> start;
   const Emit first(main, start);
+  Paths paths(module, decisions, reach);
   const float untold = decisions.noises.others ? untold_move_squared : 0;
   const Value still = decisions.any_noise ? first.number(untold) : no_value;
   const Value straight = decisions.any_bent ? first.number(0) : no_value;
   const Way none{first.integer(0), first.number(0), still, straight};
-  Paths paths(module, decisions, reach);
   const Way way = paths.walk(main.body, none);
   main.body.body.insert(main.body.body.begin(), std::make_move_iterator(start.begin()),
                         std::make_move_iterator(start.end()));

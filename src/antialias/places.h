@@ -53,6 +53,24 @@ struct Bent {
   CrossingLists::Edge edge = {};
 };
 
+// What is known of unclear pixels while they are settled (supersample.cpp): of output o and pixel i
+// number o * pixels + i of `sums` and `ranges`.
+struct Range {
+  float low = 0, high = 0;
+  Range with(const Range& other) const {
+    return {std::min(other.low, low), std::max(other.high, high)};
+  }
+};
+struct Settling {
+  std::vector<float> sums;
+  std::vector<Range> ranges;
+  std::vector<std::size_t> open, corners, kept;  // numbers of pixels
+  std::vector<Pixel> now;
+  // Of the pixels that are looked at together; see Steps::judge().
+  std::vector<float> known_lows, known_highs, spread_lows, spread_highs;
+  std::vector<std::int32_t> asks, more, uneven;
+};
+
 // One thread's memory, used again from run to run.
 struct Work {
   Found found;
@@ -64,12 +82,13 @@ struct Work {
   std::vector<Pixel> noisy;    // wild, and no edge is near
   std::vector<Pixel> halved;   // likewise fine, but not wild
   HalfGrid halves;             // the samples of these
-  Places places;    // where the next run is to be
-  Results results;  // of the last run
+  Places places;               // where the next run is to be
+  Results results;             // of the last run
   Scratch scratch;
   std::vector<std::pair<const PlaceRunner*, Planes>> inputs;
   std::vector<std::int32_t> flags;
   std::vector<float> sums, lows, highs;
+  Settling settling;
 };
 
 // An input "NAME$x" or "NAME$y" that is the slope of the input NAME per pixel; both are indices of

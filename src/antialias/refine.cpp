@@ -29,11 +29,6 @@ constexpr float least_turn = 0.1f;
 // By more than this, it is looked at from more places.
 constexpr float most_turn = 0.2f;
 
-// Whether the pixel has the lines on opposite sides.
-bool is_between(const Line& a, const Line& b) {
-  return a.distance * b.distance * (a.nx * b.nx + a.ny * b.ny) < 0;
-}
-
 constexpr CrossingLists::Edge out_of_reach = {.share = 1};
 
 // Edges that bend look farther than they are from inside, the more so the nearer the middle is: the
@@ -52,40 +47,44 @@ void Refiner::find_crossings(CrossingLists& c, bool may_bend, Work& work, RunSta
   for (std::size_t i = 0; i < c.count; ++i) places.x[i] = c.x[i] + 0.5, places.y[i] = c.y[i] + 0.5;
   const Results& edges = edges_->run(work, status);
   const float reach = options_.filter.reach(), farthest = std::max(farthest_explained, 2 * reach);
-  work.flags.resize(c.count + CrossingLists::beyond);
-  auto* nearness = reinterpret_cast<Nearness*>(work.flags.data());
+  const std::size_t room = c.count + CrossingLists::beyond;
+  if (work.flags.size() < 6 * room) work.flags.resize(8 * room);
+  auto* const nearness = reinterpret_cast<Nearness*>(work.flags.data());
+  std::int32_t* const fates = work.flags.data() + room;
   steps().see_nearness(c, edges.lists(), reach, farthest, nearness);
-  std::size_t kept = 0;
+  steps().find_fates(c, edges.lists(), nearness,
+                     {reach, farthest, may_bend ? farthest_bent(reach) : 0}, fates);
+  // Which fate is by chance: lists instead of branches.
+  std::int32_t *const kept = fates + room, *const unclear = kept + room,
+                      *const bent = unclear + room, *const between = bent + room;
+  std::size_t all_kept = 0, all_unclear = 0, all_bent = 0, all_between = 0;
   for (std::size_t i = 0; i < c.count; ++i) {
-    bool is_kept = nearness[i] == Nearness::one_edge;
-    const float nearest = std::abs(edges[0][i]);
-    const bool is_second_near = std::abs(edges[3][i]) < farthest;
-    if (c.hidden[i] != 0) {
-      // The other edge may be seen from beyond the crease only.
-      is_kept = nearest < reach && !is_second_near;
-      if (nearest < reach && is_second_near)
-        work.unclear.push_back({c.pixel(i), {line_of(edges, 0, i), line_of(edges, 1, i)}});
-    } else if (nearness[i] == Nearness::unclear) {
-      if (may_bend && !(std::abs(edges[3][i]) < reach))
-        work.bent.push_back({c.pixel(i)});
-      else
-        work.unclear.push_back({c.pixel(i), {line_of(edges, 0, i), line_of(edges, 1, i)}});
-    } else if (nearest >= reach && is_second_near && c.unseen[i] == 0 &&
-               is_between(line_of(edges, 0, i), line_of(edges, 1, i))) {
-      work.between.push_back(c.pixel(i));
-      is_kept = false;
-    } else if (may_bend && nearness[i] == Nearness::out_of_reach) {
-      is_kept = nearest < farthest_bent(reach);
-      // What is no circle stays out of reach.
-      if (!is_kept && c.enclosed[i] != 0) work.bent.push_back({c.pixel(i), true, out_of_reach});
-    }
-    // Most are out of reach or not by chance: no branch.
-    c.x[kept] = c.x[i], c.y[kept] = c.y[i];
-    c.distance[kept] = edges[0][i], c.nx[kept] = edges[1][i], c.ny[kept] = edges[2][i];
-    c.hidden[kept] = c.hidden[i], c.unseen[kept] = c.unseen[i], c.enclosed[kept] = c.enclosed[i];
-    kept += is_kept;
+    const std::int32_t fate = fates[i], number = static_cast<std::int32_t>(i);
+    kept[all_kept] = unclear[all_unclear] = bent[all_bent] = between[all_between] = number;
+    all_kept += (fate & to_follow) != 0, all_unclear += (fate & to_sample) != 0;
+    all_bent += (fate & to_fit) != 0, all_between += (fate & to_smooth) != 0;
   }
-  c.count = kept;
+  for (std::size_t k = 0; k < all_unclear; ++k) {
+    const auto i = static_cast<std::size_t>(unclear[k]);
+    work.unclear.push_back({c.pixel(i), {line_of(edges, 0, i), line_of(edges, 1, i)}});
+  }
+  for (std::size_t k = 0; k < all_bent; ++k) {
+    const auto i = static_cast<std::size_t>(bent[k]);
+    // What is out of reach and no circle stays so.
+    if (nearness[i] == Nearness::unclear)
+      work.bent.push_back({c.pixel(i)});
+    else
+      work.bent.push_back({c.pixel(i), true, out_of_reach});
+  }
+  for (std::size_t k = 0; k < all_between; ++k)
+    work.between.push_back(c.pixel(static_cast<std::size_t>(between[k])));
+  for (std::size_t k = 0; k < all_kept; ++k) {
+    const auto i = static_cast<std::size_t>(kept[k]);
+    c.x[k] = c.x[i], c.y[k] = c.y[i];
+    c.distance[k] = edges[0][i], c.nx[k] = edges[1][i], c.ny[k] = edges[2][i];
+    c.hidden[k] = c.hidden[i], c.unseen[k] = c.unseen[i], c.enclosed[k] = c.enclosed[i];
+  }
+  c.count = all_kept;
 }
 
 // Looks at each edge again, a little along it and on its far side: how it bends, and whether there

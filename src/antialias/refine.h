@@ -46,13 +46,6 @@ struct Refined {
   }
 };
 
-struct Range {
-  float low = 0, high = 0;
-  Range with(const Range& other) const {
-    return {std::min(other.low, low), std::max(other.high, high)};
-  }
-};
-
 class Refiner {
  public:
   // `edges` may be null: then everything is supersampled.
@@ -93,7 +86,9 @@ class Refiner {
                      RunStatus& status) const;
   void fill_halves(Work& work, RunStatus& status) const;
   void settle_noise(Refined& result, Counts& counts, Work& work, RunStatus& status) const;
-  static Range range_around(const Tile& tile, const Pixel& pixel, std::size_t output);
+  static Range range_around(const float* middle, std::ptrdiff_t width);
+  void judge(const Tile& tile, std::span<const std::size_t> now, std::uint32_t first,
+             std::uint32_t last, Work& work) const;
   void settle(const Tile& tile, Refined& result, Counts& counts, Work& work,
               RunStatus& status) const;
 

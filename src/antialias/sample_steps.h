@@ -30,6 +30,43 @@ template <class Both>
   return both(evens(quarter[0], quarter[1]), odds(quarter[0], quarter[1]));
 }
 
+// As differ() of tile.h.
+template <class V>
+[[gnu::always_inline]] inline AnswersOf<V> differs(V a, V b) {
+  constexpr float infinite = __builtin_inff();
+  const V apart = size(a - b);
+  const AnswersOf<V> is_same = (a == b) | ((a != a) & (b != b));
+  const V least = differ_least + differ_relative * larger(size(a), size(b));
+  return ~(apart <= differ_least) & ~is_same & (~(apart <= least) | (apart == infinite));
+}
+
+template <std::size_t lanes>
+void judge(Ranges seen, Ranges known, const std::int32_t* asks, Ranges spread, float parts,
+           std::size_t count, Verdict verdict) {
+  using V = typename LanesOf<lanes>::Floats;
+  using Answers = AnswersOf<V>;
+  for (std::size_t i = 0; i < count; i += lanes) {
+    const V low = load<V>(seen.lows + i), high = load<V>(seen.highs + i);
+    const V from = load<V>(known.lows + i), to = load<V>(known.highs + i);
+    const Answers exceeds = ((low < from) & differs(low, from)) | ((high > to) & differs(high, to));
+    const V least = load<V>(spread.lows + i), most = load<V>(spread.highs + i);
+    const Answers is_uneven = differs(least, V(least + (most - least) / parts));
+    store(verdict.more + i, load<Answers>(verdict.more + i) | (exceeds & load<Answers>(asks + i)));
+    store(verdict.uneven + i, load<Answers>(verdict.uneven + i) | is_uneven);
+  }
+}
+
+inline void place(double x, double y, const float* offset_x, const float* offset_y,
+                  std::size_t each, double* to_x, double* to_y) {
+  using Doubles [[gnu::vector_size(8 * eight)]] = double;
+  std::size_t k = 0;
+  for (; k + eight <= each; k += eight) {
+    store(to_x + k, Doubles(x + __builtin_convertvector(load<Eight>(offset_x + k), Doubles)));
+    store(to_y + k, Doubles(y + __builtin_convertvector(load<Eight>(offset_y + k), Doubles)));
+  }
+  for (; k < each; ++k) to_x[k] = x + double(offset_x[k]), to_y[k] = y + double(offset_y[k]);
+}
+
 // Sums are taken in an order that depends on `each` alone: of every eighth value, then of these.
 inline void summarise(const float* values, std::size_t count, std::size_t each,
                       const Summary& summary) {

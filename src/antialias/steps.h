@@ -27,10 +27,27 @@ struct HalfRow {
 
 // What the program of edges said at the crossings' pixels becomes of them; see refine.cpp.
 enum class Nearness : std::int32_t { out_of_reach, one_edge, unclear };
+// Then, as bits of which one is set at most: it has one edge to follow, it is unclear, its edge may
+// be a circle's, it lies between the bends of a ramp.
+inline constexpr std::int32_t to_follow = 1, to_sample = 2, to_fit = 4, to_smooth = 8;
+// Of the kernel, of a second edge that matters, and of an edge that bends, from inside; 0: none
+// does.
+struct Reaches {
+  float kernel, second, bent;
+};
 
 // Sum, least and largest of numbers.
 struct Summary {
   float *sums, *lows, *highs;
+};
+
+// From and to, of pixel after pixel.
+struct Ranges {
+  const float *lows, *highs;
+};
+// What becomes of pixels by some samples of theirs: 0 is no.
+struct Verdict {
+  std::int32_t *more, *uneven;
 };
 
 // Lists may be read and written up to CrossingLists::beyond behind their ends.
@@ -51,6 +68,9 @@ struct Steps {
   // edge within `farthest`, are two within `reach` of the kernel, do they explain every jump?
   void (*see_nearness)(const CrossingLists& crossings, const float* const* lines, float reach,
                        float farthest, Nearness* nearness);
+  // The fates of the same pixels.
+  void (*find_fates)(const CrossingLists& crossings, const float* const* lines,
+                     const Nearness* nearness, const Reaches& reaches, std::int32_t* fates);
   // From where the crossings' edges are looked at again: a little along them, on their far sides.
   void (*find_second_looks)(const CrossingLists& crossings, float reach, double* x, double* y);
   // Distances, bends, others and is_one from the edges that were seen there.
@@ -61,6 +81,14 @@ struct Steps {
   // The middles of the sides that the normals point to, then those of the others.
   void (*find_sides)(const CrossingLists& crossings, double* x, double* y);
 
+  // Of an output: whether some of what its samples are, `seen`, can be told from all that is
+  // `known` (asked where `asks` is -1), and whether a part of what it spreads over can be seen.
+  // Adds to the verdict.
+  void (*judge)(Ranges seen, Ranges known, const std::int32_t* asks, Ranges spread, float parts,
+                std::size_t count, Verdict verdict);
+  // `each` places at these offsets from one.
+  void (*place)(double x, double y, const float* offset_x, const float* offset_y, std::size_t each,
+                double* to_x, double* to_y);
   // values[k * each + i], i < each: those of number k.
   void (*summarise)(const float* values, std::size_t count, std::size_t each,
                     const Summary& summary);

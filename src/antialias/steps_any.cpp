@@ -14,10 +14,13 @@ const Steps& steps_for_any() {
                                   smooth<8>,
                                   mean_of_halves<8>,
                                   see_nearness<4>,
+                                  find_fates<4>,
                                   find_second_looks,
                                   look_again<4>,
                                   bend_shares<4>,
                                   find_sides,
+                                  judge<4>,
+                                  place,
                                   summarise};
   return these;
 }

@@ -14,10 +14,13 @@ const Steps& steps_for_avx2() {
                                   smooth<8>,
                                   mean_of_halves<8>,
                                   see_nearness<8>,
+                                  find_fates<8>,
                                   find_second_looks,
                                   look_again<8>,
                                   bend_shares<8>,
                                   find_sides,
+                                  judge<8>,
+                                  place,
                                   summarise};
   return these;
 }

@@ -14,10 +14,13 @@ const Steps& steps_for_avx512() {
                                   smooth<16>,
                                   mean_of_halves<16>,
                                   see_nearness<16>,
+                                  find_fates<16>,
                                   find_second_looks,
                                   look_again<16>,
                                   bend_shares<16>,
                                   find_sides,
+                                  judge<16>,
+                                  place,
                                   summarise};
   return these;
 }

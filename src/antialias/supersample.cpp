@@ -24,22 +24,6 @@ constexpr std::uint32_t corner_look = 16;
 // So many are enough where noise is fine and no edge is near.
 constexpr std::uint32_t noise_look = 16;
 
-// Whether some of what is in the range can be told from all that is in the other.
-bool exceeds(const Range& range, const Range& other) {
-  return (range.low < other.low && differ(range.low, other.low)) ||
-         (range.high > other.high && differ(range.high, other.high));
-}
-
-// Whether what `count` samples are spread over can be seen in their mean.
-bool is_uneven(const Range& range, std::uint32_t count) {
-  const float part = (range.high - range.low) / (mean_per_range * static_cast<float>(count));
-  return differ(range.low, range.low + part);
-}
-
-}  // namespace
-
-namespace {
-
 // Room for `lists` summaries of so many pixels, one behind the other.
 Summary summaries(Work& work, std::size_t lists, std::size_t pixels) {
   for (auto* list : {&work.sums, &work.lows, &work.highs})
@@ -63,12 +47,10 @@ void Refiner::sample(std::span<const Pixel> pixels, std::uint32_t first, std::ui
     double *to_x = places.x.data(), *to_y = places.y.data();
     for (std::size_t i = begin; i < end; ++i) {
       const Pixel& pixel = pixels[i];
-      const double x = pixel.x + 0.5, y = pixel.y + 0.5;
       const Offsets offsets = patterns_.of(pixel.x, pixel.y, last).part(first, each);
-      for (std::size_t k = 0; k < each; ++k) {
-        *to_x++ = x + double(offsets.x[k]);
-        *to_y++ = y + double(offsets.y[k]);
-      }
+      steps().place(pixel.x + 0.5, pixel.y + 0.5, offsets.x.data(), offsets.y.data(), each, to_x,
+                    to_y);
+      to_x += each, to_y += each;
     }
     const Results& results = program_.run(work, status);
     visit(begin, end - begin, results);
@@ -151,9 +133,7 @@ bool Refiner::by_regions(const Unclear& pixel, std::uint32_t look, const Results
 }
 
 // What an output is at a pixel and the eight around it.
-Range Refiner::range_around(const Tile& tile, const Pixel& pixel, std::size_t output) {
-  const std::ptrdiff_t width = tile.area.width();
-  const float* middle = tile.planes[output] + tile.at(pixel.x, pixel.y);
+Range Refiner::range_around(const float* middle, std::ptrdiff_t width) {
   Four lows = Four{} + middle[0], highs = lows;
   for (const std::ptrdiff_t row : {-width, std::ptrdiff_t{0}, width}) {
     const Four four_of = load<Four>(middle + row - 1);
@@ -166,6 +146,52 @@ Range Refiner::range_around(const Tile& tile, const Pixel& pixel, std::size_t ou
   return range;
 }
 
+// What the samples [first, last) of the unclear pixels `now`, summed up in `work`, say of each:
+// whether it needs any, and whether these are too few.
+void Refiner::judge(const Tile& tile, std::span<const std::size_t> now, std::uint32_t first,
+                    std::uint32_t last, Work& work) const {
+  Settling& s = work.settling;
+  const std::size_t number = now.size(), pixels = work.unclear.size();
+  const std::size_t room = number + CrossingLists::beyond;
+  for (auto* list : {&s.known_lows, &s.known_highs, &s.spread_lows, &s.spread_highs})
+    if (list->size() < room) list->resize(room);
+  for (auto* list : {&s.asks, &s.more, &s.uneven})
+    if (list->size() < room) list->resize(room);
+  // The first few may have missed what a neighbour shows.
+  const bool looks_around = last <= first_look;
+  for (std::size_t k = 0; k < number; ++k) {
+    const Pixel& pixel = work.unclear[now[k]].pixel;
+    s.more[k] = pixel.narrow && first == 0 ? 0 : -1;
+    s.uneven[k] = 0;
+    s.asks[k] = looks_around || pixel.hidden ? -1 : 0;
+  }
+  for (std::size_t o = 0; o < outputs_; ++o) {
+    float *const lows = &work.lows[o * number], *const highs = &work.highs[o * number];
+    for (std::size_t k = 0; k < number; ++k) {
+      const std::size_t i = now[k], of = o * pixels + i;
+      s.sums[of] = first == 0 ? work.sums[o * number + k] : s.sums[of] + work.sums[o * number + k];
+      Range range{lows[k], highs[k]};
+      if (first > 0) range = s.ranges[of].with(range);
+      s.ranges[of] = range;
+      lows[k] = range.low, highs[k] = range.high;
+      const Pixel& pixel = work.unclear[i].pixel;
+      const float* middle = tile.planes[o] + tile.at(pixel.x, pixel.y);
+      Range known{*middle, *middle};
+      if (looks_around) {
+        const Range around = range_around(middle, tile.area.width());
+        if (!pixel.hidden) known = around;
+        range = range.with(around);
+      }
+      s.known_lows[k] = known.low, s.known_highs[k] = known.high;
+      s.spread_lows[k] = range.low, s.spread_highs[k] = range.high;
+    }
+    steps().judge({lows, highs}, {s.known_lows.data(), s.known_highs.data()}, s.asks.data(),
+                  {s.spread_lows.data(), s.spread_highs.data()},
+                  mean_per_range * static_cast<float>(last), number,
+                  {s.more.data(), s.uneven.data()});
+  }
+}
+
 // Samples in steps, each as many as before it together. Narrow pixels whose first samples show
 // nothing stay as they are; those whose samples confirm two edges are put together from their
 // regions. Half of the samples are enough, but for outlines: theirs are long, and nothing else
@@ -174,89 +200,65 @@ void Refiner::settle(const Tile& tile, Refined& result, Counts& counts, Work& wo
                      RunStatus& status) const {
   const std::vector<Unclear>& unclear = work.unclear;
   if (unclear.empty()) return;
+  Settling& s = work.settling;
   const std::uint32_t count = this->count(), look = std::min(corner_look, count);
-  std::vector<float> sums(unclear.size() * outputs_);
-  std::vector<Range> ranges(sums.size());
-  std::vector<std::size_t> open(unclear.size());
-  std::iota(open.begin(), open.end(), std::size_t{0});
+  const std::size_t size = unclear.size() * outputs_;
+  if (s.sums.size() < size) s.sums.resize(2 * size), s.ranges.resize(2 * size);
   std::vector<float> values(outputs_);
   result.reserve(result.pixels.size() + unclear.size());
-  const auto done = [&](std::size_t i, const float* of, float number) {
+  const auto done = [&](std::size_t i, const float* of, std::size_t apart, float number) {
     result.pixels.push_back(unclear[i].pixel);
-    for (std::size_t o = 0; o < outputs_; ++o) result.values[o].push_back(of[o] / number);
+    for (std::size_t o = 0; o < outputs_; ++o) result.values[o].push_back(of[o * apart] / number);
     ++counts.supersampled;
   };
 
-  std::vector<std::size_t> kept, now;
-  std::vector<Pixel> pixels;
-  // The samples [first, last) of the pixels `now`; those that need more are kept.
-  const auto step = [&](std::uint32_t first, std::uint32_t last) {
-    pixels.clear();
-    for (const std::size_t i : now) pixels.push_back(unclear[i].pixel);
+  // The samples [first, last) of some pixels; those that need more are kept.
+  const auto step = [&](const std::vector<std::size_t>& of, std::uint32_t first,
+                        std::uint32_t last) {
+    if (of.empty()) return;
+    s.now.clear();
+    for (const std::size_t i : of) s.now.push_back(unclear[i].pixel);
     const std::size_t each = last - first;
-    const auto look_at = [&](std::size_t k, std::size_t number, std::size_t s,
-                             const Results& results) {
-      const std::size_t i = now[k];
-      const Pixel& pixel = unclear[i].pixel;
-      float* sum = &sums[i * outputs_];
-      bool uneven = false, more = !pixel.narrow || first > 0;
+    const auto look_at = [&](std::size_t begin, std::size_t number, const Results& results) {
+      const Summary all = summaries(work, outputs_, number);
       for (std::size_t o = 0; o < outputs_; ++o) {
-        const std::size_t of = o * number + s;
-        const Range seen{work.lows[of], work.highs[of]};
-        sum[o] += work.sums[of];
-        Range& range = ranges[i * outputs_ + o];
-        range = first == 0 ? seen : range.with(seen);
-        const float own = tile.planes[o][tile.at(pixel.x, pixel.y)];
-        if (last > first_look) {
-          uneven = uneven || is_uneven(range, last);
-          more = more || (pixel.hidden && exceeds(range, {own, own}));
-          continue;
-        }
-        // The first few may have missed what a neighbour shows.
-        const Range around = range_around(tile, pixel, o);
-        more = more || exceeds(range, pixel.hidden ? Range{own, own} : around);
-        uneven = uneven || is_uneven(range.with(around), last);
+        const std::size_t at = o * number;
+        steps().summarise(results[o], number, each, {all.sums + at, all.lows + at, all.highs + at});
       }
-      if (!more) return;
-      const std::uint32_t most = pixel.silhouette ? count : std::max(look, count / 2);
-      if (uneven && first == 0 && last == look &&
-          by_regions(unclear[i], look, results, s * each, values))
-        done(i, values.data(), 1);
-      else if (!uneven || last >= most)
-        done(i, sum, static_cast<float>(last));
-      else
-        kept.push_back(i);
+      judge(tile, std::span(of).subspan(begin, number), first, last, work);
+      for (std::size_t k = 0; k < number; ++k) {
+        if (s.more[k] == 0) continue;
+        const std::size_t i = of[begin + k];
+        const std::uint32_t most = unclear[i].pixel.silhouette ? count : std::max(look, count / 2);
+        const bool is_uneven = s.uneven[k] != 0;
+        if (is_uneven && first == 0 && last == look &&
+            by_regions(unclear[i], look, results, k * each, values))
+          done(i, values.data(), 1, 1);
+        else if (!is_uneven || last >= most)
+          done(i, &s.sums[i], unclear.size(), static_cast<float>(last));
+        else
+          s.kept.push_back(i);
+      }
     };
-    sample(pixels, first, last, work, status,
-           [&](std::size_t begin, std::size_t number, const Results& results) {
-             const Summary all = summaries(work, outputs_, number);
-             for (std::size_t o = 0; o < outputs_; ++o) {
-               const std::size_t of = o * number;
-               steps().summarise(results[o], number, each,
-                                 {all.sums + of, all.lows + of, all.highs + of});
-             }
-             for (std::size_t s = 0; s < number; ++s) look_at(begin + s, number, s, results);
-           });
+    sample(s.now, first, last, work, status, look_at);
   };
+
+  // The first samples of what may be two edges are looked at together.
+  s.open.clear(), s.corners.clear();
   const float reach = options_.filter.reach();
+  for (std::size_t i = 0; i < unclear.size(); ++i)
+    (unclear[i].lines.are_within(reach) ? s.corners : s.open).push_back(i);
   std::uint32_t taken = 0;
-  for (std::uint32_t next = std::min(first_look, look); !open.empty() && !status.stopped();
+  for (std::uint32_t next = std::min(first_look, look);
+       !(s.open.empty() && s.corners.empty()) && !status.stopped();
        next = std::min(2 * next, count)) {
-    kept.clear();
-    // The samples of two edges are looked at together.
-    std::vector<std::size_t> later;
-    for (const bool corners : {false, true}) {
-      now.clear();
-      for (const std::size_t i : open)
-        if (next > look ? !corners : unclear[i].lines.are_within(reach) == corners)
-          now.push_back(i);
-      if (corners && next < look)
-        later = now;
-      else if (!now.empty())
-        step(corners ? 0 : taken, next);
+    s.kept.clear();
+    step(s.open, taken, next);
+    if (next >= look) {
+      step(s.corners, 0, next);
+      s.corners.clear();
     }
-    open = kept;
-    open.insert(open.end(), later.begin(), later.end());
+    std::swap(s.open, s.kept);
     taken = next;
   }
 }

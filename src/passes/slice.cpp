@@ -42,7 +42,7 @@ void Slice::visit(const Instruction& in) {
     if (arrays_[static_cast<std::size_t>(in.imm)]) mark(in.operands[1]);
   } else {
     bool wanted = false;
-    for (const Value result : in.results) wanted = wanted || needed_[result];
+    for (const Value result : in.results) wanted = wanted || (needed_[result] && !ends_[result]);
     // A number made of whole ones is a count or a hash, as good as a call's result.
     if (!wanted || (!through_calls_ && (in.op == Op::call || in.op == Op::i2f))) return;
     for (const Value operand : in.operands) mark(operand);

@@ -14,10 +14,13 @@ class Slice {
   explicit Slice(const ir::Function& function, bool through_calls = true)
       : function_(function),
         needed_(function.values.size()),
+        ends_(function.values.size()),
         arrays_(function.arrays.size()),
         through_calls_(through_calls) {}
 
   void need(ir::Value value) { needed_[value] = true; }
+  // What this one is computed from is left out, unless something else needs it.
+  void end_at(ir::Value value) { ends_[value] = true; }
   // Until nothing changes; a loop needs a round for each value that its turns hand on.
   void run();
 
@@ -31,6 +34,7 @@ class Slice {
 
   const ir::Function& function_;
   std::vector<bool> needed_;
+  std::vector<bool> ends_;
   std::vector<bool> arrays_;
   bool through_calls_;
   bool changed_ = false;

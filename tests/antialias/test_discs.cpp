@@ -69,13 +69,20 @@ double exact_share(FilterKind kind, double dx, double dy, double radius) {
   return share;
 }
 
-// A disc at (cx, cy) of a picture of so many pixels, said in three ways.
-constexpr int forms = 3;
+// A disc at (cx, cy) of a picture of so many pixels, said in three ways; the others are distances
+// of which the slope is known beforehand (bent.h).
+constexpr int forms = 3, all_forms = 8;
 std::string disc(int form, int size, double cx, double cy, double radius) {
   const std::string place =
       "_p = [u, 1 - v] * " + std::to_string(size) + " - [" + text(cx) + ", " + text(cy) + "]\n";
-  const char* conditions[forms] = {"length(_p) < _r", "dot(_p, _p) < _r * _r",
-                                   "_p.x * _p.x + _p.y * _p.y - _r * _r < 0"};
+  const char* conditions[all_forms] = {"length(_p) < _r",
+                                       "dot(_p, _p) < _r * _r",
+                                       "_p.x * _p.x + _p.y * _p.y - _r * _r < 0",
+                                       "abs(length(_p) + 3) < 3 + _r",
+                                       "-length(_p) / 4 > -_r / 4",
+                                       "max(length(_p), -1) - _r < 0",
+                                       "length(rotate(0.3 * _p, 0.7)) < 0.3 * _r",
+                                       "_r - length([_p.x, _p.y, 0]) * 2 > -length(_p)"};
   return "_r = " + text(radius) + "\n" + place + "c = " + conditions[form] + " ? 1 : 0\n";
 }
 
@@ -127,6 +134,33 @@ TEST(Discs, OfEveryRadiusAreWithinOneStep) {
       for (int form = 0; form < forms; ++form)
         EXPECT_LT(worst_error(kind, radius, form, radius < 4 ? 8 : 3), one_step)
             << (kind == FilterKind::box ? "box " : "cubic ") << radius << " form " << form;
+}
+
+TEST(Discs, OfDistancesInOtherWordsAreSeen) {
+  for (const double radius : {0.1, 0.25, 0.5, 0.7})
+    for (int form = forms; form < all_forms; ++form)
+      EXPECT_LT(worst_error(FilterKind::cubic, radius, form, 5), one_step) << radius << ' ' << form;
+}
+
+// Where a pixel's way is stretched more along one direction, the largest counts: none is missed.
+TEST(Discs, ThatAreStretchedAreSeen) {
+  for (const char* stretched : {"[3 * _p.x, _p.y]", "[_p.x + 2 * _p.y, _p.y]",
+                                "rotate([_p.x, 4 * _p.y], 0.4)", "[_p.x, _p.y, 2 * _p.x - _p.y]"})
+    for (const double at : {8.0, 8.2, 8.45}) {
+      const std::string program = "_p = [u, 1 - v] * 16 - [" + text(at) + ", " + text(8.1) +
+                                  "]\nc = length(" + stretched + ") < 0.6 ? 1 : 0\n";
+      const auto sum = [&](const Options& by) {
+        const Picture picture =
+            render(program, {.width = 16, .height = 16, .interpret = true, .antialias = by});
+        double all = 0;
+        for (const float value : picture.planes[0]) all += value;
+        return all;
+      };
+      const double exact = sum(samples(2048));
+      EXPECT_GT(exact, 0.1) << program;
+      // By 32 samples, since it is no circle.
+      EXPECT_NEAR(sum(procedural()), exact, 0.4 * exact) << program;
+    }
 }
 
 // Dots of a quarter of a pixel to one and a half, most of them between the samples.

@@ -164,5 +164,38 @@ TEST(Path, BendsLeaveTheBitsOfJumps) {
   EXPECT_NE(bits("c = select(x < 1, 2, 3)\n", 0), bits("c = select(x < 1, 2, 3)\n", 2));
 }
 
+// What only a jump is computed from is seen by that jump alone; the same number shown is a bend.
+TEST(Path, BendsCountOnlyWhereAnOutputShowsThem) {
+  for (const char* text :
+       {"c = floor(max(x, 1) / 4)\n", "_m = min(x, 1)\nc = 0\nif _m > 0.7\n    c = 1\n",
+        "c = mod(floor(min(x, 1) / 8 + 3), 2)\n"})
+    EXPECT_EQ(path_at(text, 0.8f), path_at(text, 1.2f)) << text;
+  EXPECT_EQ(path_at("c = select(min(x, 1) < 0.5, 2, 3)\n", 0.8f),
+            path_at("c = select(min(x, 1) < 0.5, 2, 3)\n", 1.2f));
+  EXPECT_NE(path_at("c = select(min(x, 1) < 0.5, 2, 3)\n", 0.4f),
+            path_at("c = select(min(x, 1) < 0.5, 2, 3)\n", 0.6f));
+  for (const char* text : {"_m = min(x, 1)\nc = select(_m < 0.5, _m, 3)\n",
+                           "c = 0\nif min(x, 1) > 0.7\n    c = x\nc += max(x, 1)\n",
+                           "_a = array(3)\n_a[1] = min(x, 1)\nc = _a[1]\n",
+                           "_m = min(x, 1)\nfor i in [1 .. 5]\n    _m = _m * _m\nc = _m\n"})
+    EXPECT_NE(path_at(text, 0.8f), path_at(text, 1.2f)) << text;
+}
+
+// A step that only one branch looks at, to choose a random number, is none elsewhere. One that
+// decides there is, for the branch may lie between two samples.
+TEST(Path, WhatOneBranchUsesDecidesThere) {
+  const char* random =
+      "_s = 1 + floor(x / 4)\n_k = floor(8 * x * _s)\nc = 0\nif x > 5\n    c = hash(_k, _s)\n";
+  EXPECT_EQ(path_at(random, 0.1f), path_at(random, 4.9f));
+  EXPECT_NE(path_at(random, 5.1f), path_at(random, 5.9f));
+  EXPECT_NE(path_at(random, 4.9f), path_at(random, 5.1f));
+  for (const char* text :
+       {"_k = floor(8 * x)\nc = 0\nif x > 5\n    c = mod(_k, 3) > 0.5 ? 1 : 0\n",
+        "_k = floor(8 * x)\nc = hash(_k)\nif x > 5\n    c += hash(_k, 1)\n",
+        "_k = floor(8 * x)\nc = 0\nif x > 5\n    c = hash(_k)\nelse\n    c = hash(_k, 2)\n",
+        "_b = x < 2\nc = 0\nif x > 5 and _b\n    c = 1\n"})
+    EXPECT_NE(path_at(text, 0.1f), path_at(text, 4.9f)) << text;
+}
+
 }  // namespace
 }  // namespace pse::antialias

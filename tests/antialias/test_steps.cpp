@@ -327,6 +327,99 @@ TEST_F(StepsOfAntialiasing, AJumpThatNoLinePartsIsUnclear) {
       }
 }
 
+// As one pixel after the other: by the rule that refine.cpp had for each.
+TEST_F(StepsOfAntialiasing, FindFates) {
+  constexpr std::size_t count = 203;
+  constexpr float reach = 0.75f, farthest = 1.7f;
+  std::vector<std::vector<float>> lines(edge_outputs, std::vector<float>(count + beyond));
+  std::vector<const float*> pointers;
+  for (auto& list : lines) {
+    for (float& value : list) value = number(0, 1) < 0.1f ? any_number() : number(-2, 2);
+    pointers.push_back(list.data());
+  }
+  for (std::size_t i = 0; i < count; i += 7) lines[1][i] = lines[2][i] = 0;
+  Crossings room;
+  CrossingLists c = room.lists(count);
+  c.count = count;
+  std::vector<Nearness> nearness(count + beyond);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto any = [&](float part) { return number(0, 1) < part ? 1 : 0; };
+    c.hidden[i] = any(0.2f), c.unseen[i] = any(0.2f), c.enclosed[i] = any(0.5f);
+    nearness[i] = static_cast<Nearness>(any(0.5f) + any(0.5f));
+  }
+  std::array<int, 9> seen{};
+  for (const float bent : {0.0f, 1.2f})
+    for (const Steps* steps : runnable()) {
+      std::vector<std::int32_t> fates(count + beyond);
+      steps->find_fates(c, pointers.data(), nearness.data(), {reach, farthest, bent}, fates.data());
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto line = [&](std::size_t of) {
+          const Line some{lines[of][i], lines[of + 1][i], lines[of + 2][i]};
+          return some.nx == 0 && some.ny == 0 ? Line{no_edge, 1, 0} : some;
+        };
+        const Line a = line(0), b = line(3);
+        const float nearest = std::abs(lines[0][i]), second = std::abs(lines[3][i]);
+        std::int32_t expected = nearness[i] == Nearness::one_edge ? to_follow : 0;
+        if (c.hidden[i] != 0) {
+          expected = nearest < reach ? (second < farthest ? to_sample : to_follow) : 0;
+        } else if (nearness[i] == Nearness::unclear) {
+          expected = bent > 0 && !(second < reach) ? to_fit : to_sample;
+        } else if (nearest >= reach && second < farthest && c.unseen[i] == 0 &&
+                   a.distance * b.distance * (a.nx * b.nx + a.ny * b.ny) < 0) {
+          expected = to_smooth;
+        } else if (bent > 0 && nearness[i] == Nearness::out_of_reach) {
+          expected = nearest < bent ? to_follow : c.enclosed[i] != 0 ? to_fit : 0;
+        }
+        EXPECT_EQ(fates[i], expected) << i;
+        ++seen[static_cast<std::size_t>(expected)];
+      }
+    }
+  for (const std::int32_t fate : {0, to_follow, to_sample, to_fit, to_smooth})
+    EXPECT_GT(seen[static_cast<std::size_t>(fate)], 0) << fate;
+}
+
+TEST_F(StepsOfAntialiasing, JudgeSamplesAsDifferDoes) {
+  constexpr std::size_t count = 85;
+  constexpr float parts = 24;
+  std::array<std::vector<float>, 6> lists;
+  for (auto& list : lists)
+    for (std::size_t i = 0; i < count + beyond; ++i)
+      list.push_back(number(0, 1) < 0.2f ? any_number() : std::round(number(0, 8)) / 500);
+  const auto& [low, high, from, to, least, most] = lists;
+  std::vector<std::int32_t> asks(count + beyond);
+  for (auto& ask : asks) ask = number(0, 1) < 0.7f ? -1 : 0;
+  for (const Steps* steps : runnable()) {
+    std::vector<std::int32_t> more(count + beyond), uneven(count + beyond);
+    for (std::size_t i = 0; i < count; i += 5) more[i] = uneven[i] = -1;
+    steps->judge({low.data(), high.data()}, {from.data(), to.data()}, asks.data(),
+                 {least.data(), most.data()}, parts, count, {more.data(), uneven.data()});
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool exceeds = (low[i] < from[i] && differ(low[i], from[i])) ||
+                           (high[i] > to[i] && differ(high[i], to[i]));
+      const bool is_uneven = differ(least[i], least[i] + (most[i] - least[i]) / parts);
+      EXPECT_EQ(more[i] != 0, i % 5 == 0 || (exceeds && asks[i] != 0)) << low[i] << ' ' << from[i];
+      EXPECT_EQ(uneven[i] != 0, i % 5 == 0 || is_uneven) << least[i] << ' ' << most[i];
+    }
+  }
+}
+
+TEST_F(StepsOfAntialiasing, PlaceSamples) {
+  std::vector<float> dx(32), dy(32);
+  for (float& offset : dx) offset = number(-1, 1);
+  for (float& offset : dy) offset = number(-1, 1);
+  for (const std::size_t each : {std::size_t{3}, std::size_t{8}, std::size_t{21}})
+    for (const Steps* steps : runnable()) {
+      std::vector<double> x(each + 1, -7), y(x);
+      steps->place(1e5 + 0.5, 3.5, dx.data(), dy.data(), each, x.data(), y.data());
+      for (std::size_t k = 0; k < each; ++k) {
+        EXPECT_EQ(x[k], 1e5 + 0.5 + double(dx[k]));
+        EXPECT_EQ(y[k], 3.5 + double(dy[k]));
+      }
+      EXPECT_EQ(x[each], -7);
+      EXPECT_EQ(y[each], -7);
+    }
+}
+
 TEST_F(StepsOfAntialiasing, SumUpSamples) {
   for (const std::size_t each : {std::size_t{1}, std::size_t{5}, std::size_t{8}, std::size_t{24}})
     for (const std::size_t count : {std::size_t{1}, std::size_t{8}, std::size_t{21}}) {

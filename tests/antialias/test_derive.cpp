@@ -279,6 +279,7 @@ TEST(Dither, ChancesOfAPixelAreNoEdges) {
   EXPECT_FALSE(decides("c = select(hash(px, py) < u, 1, 0)\n"));
   EXPECT_FALSE(decides("c = select(hash(floor(px)) < 0.3, 1, 0)\n"));
   EXPECT_FALSE(decides("c = select(floor(px) % 2 < 1, 1, 0)\n"));
+  EXPECT_FALSE(decides("c = select(hash(2 * floor(px) + 7) < 0.3, 1, 0)\n"));
   EXPECT_FALSE(decides("c = select(fract(43758.5 * sin(12.99 * px + 78.2 * py)) < u, 1, 0)\n"));
   EXPECT_FALSE(decides("c = select(fract(52.98 * fract(0.067 * px + 0.0058 * py)) < u, 1, 0)\n"));
   // A ray that begins at a chance goes by it all its way.
@@ -290,6 +291,10 @@ TEST(Dither, PlacesInPixelsAreAsGoodAsOthers) {
   EXPECT_TRUE(decides("c = select(fract(px / 4) < 0.5, 1, 0)\n"));
   EXPECT_TRUE(decides("c = select(norm([px py] / 100 - 1) < 0.5, 1, 0)\n"));
   EXPECT_TRUE(decides("c = select(hash(u) < 0.5 + px, 1, 0)\n"));
+  // A cell of many pixels draws its chance once.
+  EXPECT_TRUE(decides("c = select(hash(floor(px / 24), floor(py / 8)) < 0.3, 1, 0)\n"));
+  EXPECT_TRUE(
+      decides("i = floor(px / 5)\nc = select(hash(i + floor((py + 2 * i) / 7)) < u, 1, 0)\n"));
   EXPECT_TRUE(decides("c = select(u < 0.5, 1, 0) + hash(px, py)\n"));
 }
 

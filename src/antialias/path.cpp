@@ -32,7 +32,7 @@ using passes::Emit;
 // What is carried along through the program.
 struct Way {
   Value path;
-  Value ends;  // the sum of what searches ended with; no_value inside of them
+  Value ends;  // the sum of what searches ended with and rays met; no_value inside of searches
   Value fine;  // the farthest move of noise; likewise, and where there is none
   Value bent;  // not 0: a jump that may be unseen is near; likewise
 };
@@ -68,6 +68,8 @@ class Paths {
         way.path = outcome(Emit(function_, out), Instruction(written), way.path);
       else if (way.fine != no_value && is_noise(written))
         way.fine = with_move(Emit(function_, out), Instruction(written), way.fine);
+      else if (way.ends != no_value && is_ray(written))
+        way.ends = with_met(Emit(function_, out), std::vector(written.results), way.ends);
       if (jumps && way.bent != no_value && decisions_.bent[out[at].result()])
         way.bent = with_edge(Emit(function_, out), Instruction(out[at]), way.bent);
     }
@@ -95,6 +97,10 @@ class Paths {
   bool is_noise(const Instruction& in) const {
     return in.op == Op::call && in.results[0] < decisions_.noises.size() &&
            decisions_.noises[in.results[0]];
+  }
+  bool is_ray(const Instruction& in) const {
+    return in.op == Op::external && in.results[0] < decisions_.rays.size() &&
+           decisions_.rays[in.results[0]];
   }
   static Value with_move(const Emit& emit, const Instruction& call, Value farthest) {
     return emit(Op::fmax, {farthest, move_squared(emit, call)});
@@ -213,19 +219,32 @@ class Paths {
   // The sum with what a search ends with.
   Value with_ends(const Emit& emit, const std::vector<Value>& results, Value sum) {
     has_searches_ = true;
-    for (const Value end : results) {
-      if (end >= decisions_.ends.size() || !decisions_.ends[end]) continue;
-      // 1 to 2, so that no two ends make up for each other.
-      const Value weight = emit.number(1 + static_cast<float>(next_factor() & 0xfff0) * 0x1p-16f);
-      const ir::Type type = function_.values[end].type;
-      if (type == ir::Type::boolean) {
-        sum = emit.add(sum, emit.choose(end, weight, emit.number(0)));
-      } else {
-        const Value value = type == ir::Type::i32 ? emit(Op::i2f, {end}) : end;
-        sum = emit(Op::fma, {size(emit, value), weight, sum});
-      }
+    for (const Value end : results)
+      if (end < decisions_.ends.size() && decisions_.ends[end]) sum = with_end(emit, end, sum);
+    return sum;
+  }
+
+  // The sum with what a ray has met: how bright or how visible that is, or where, which way it is
+  // turned, and which object. The places themselves change all along it.
+  Value with_met(const Emit& emit, const std::vector<Value>& results, Value sum) {
+    constexpr std::array parts_of_hit = {0, 7, 8, 9, 12};  // surface/trace_call.h
+    has_searches_ = true;
+    if (results.size() <= 4) {
+      for (const Value result : results) sum = with_end(emit, result, sum);
+    } else {
+      for (const int part : parts_of_hit)
+        sum = with_end(emit, results[static_cast<std::size_t>(part)], sum);
     }
     return sum;
+  }
+
+  Value with_end(const Emit& emit, Value end, Value sum) {
+    // 1 to 2, so that no two ends make up for each other.
+    const Value weight = emit.number(1 + static_cast<float>(next_factor() & 0xfff0) * 0x1p-16f);
+    const ir::Type type = function_.values[end].type;
+    if (type == ir::Type::boolean) return emit.add(sum, emit.choose(end, weight, emit.number(0)));
+    const Value value = type == ir::Type::i32 ? emit(Op::i2f, {end}) : end;
+    return emit(Op::fma, {size(emit, value), weight, sum});
   }
 
   // The logarithm to base 2 of 1 + |v|, nearly, with the sign of v; finite.

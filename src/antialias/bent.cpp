@@ -38,16 +38,18 @@ std::vector<bool> find_bent(const ir::Module& module, const Decisions& decisions
   return find_cheap(module, decisions, changes, bent);
 }
 
-Value is_near(const passes::Emit& emit, const Instruction& decision, float reach) {
+Value is_near(const passes::Emit& emit, const Instruction& decision, const Roots& roots,
+              float reach) {
   const auto slope = [&](Value of, std::int32_t k) {
     return emit.function().values[of].rate == ir::Rate::sample ? emit(Op::slope, {of}, k)
                                                                : emit.number(0);
   };
-  const Value a = decision.operands[0];
-  Value f = a, along_x = slope(a, 0), along_y = slope(a, 1);
   const Cut cut = cut_of(decision.op);
+  Roots::Sides sides{decision.operands[0], ir::no_value};
+  if (cut == Cut::compare) sides = roots.under(emit, {sides.a, decision.operands[1]});
+  const auto [a, b] = sides;
+  Value f = a, along_x = slope(a, 0), along_y = slope(a, 1);
   if (cut == Cut::compare) {
-    const Value b = decision.operands[1];
     f = emit.sub(a, b);
     if (emit.function().values[b].rate == ir::Rate::sample)
       along_x = emit.sub(along_x, slope(b, 0)), along_y = emit.sub(along_y, slope(b, 1));

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "antialias/roots.h"
 #include "ir/module.h"
 #include "passes/emit.h"
 #include "stream/sample_source.h"
@@ -21,6 +22,7 @@ std::vector<bool> find_bent(const ir::Module& module, const Decisions& decisions
 // Whether the edge of a comparison or a step is within `reach` pixels of the sample by f / |f'|,
 // which is never too far for what bends like a distance or its square. Asks by `slope`
 // instructions.
-ir::Value is_near(const passes::Emit& emit, const ir::Instruction& decision, float reach);
+ir::Value is_near(const passes::Emit& emit, const ir::Instruction& decision, const Roots& roots,
+                  float reach);
 
 }  // namespace pse::antialias

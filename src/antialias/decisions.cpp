@@ -182,7 +182,9 @@ Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
       found.rays[in.results[0]] = found.any = true;
   });
   found.noises = find_noise(module, found, changes);
-  found.any_noise = std::ranges::find(found.noises, true) != found.noises.end();
+  found.waves = find_waves(module, found, changes, lines);
+  found.any_noise = std::ranges::find(found.noises, true) != found.noises.end() ||
+                    std::ranges::find(found.waves, true) != found.waves.end();
   found.bent = find_bent(module, found, changes);
   found.any_bent = std::ranges::find(found.bent, true) != found.bent.end();
   return found;

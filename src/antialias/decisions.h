@@ -40,6 +40,7 @@ struct Decisions {
   // shadows and reflections have edges.
   std::vector<bool> rays;
   std::vector<bool> noises;  // calls of noise that may be finer than a pixel (fine.h)
+  std::vector<bool> waves;   // likewise sines and cosines
   std::vector<bool> bent;    // jumps that no pixel's middle may show (bent.h)
   bool any = false;          // whether there is a fork, or a ray
   bool any_jump = false;

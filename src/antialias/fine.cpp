@@ -29,27 +29,46 @@ class Noises {
 
   std::vector<bool> find(const std::vector<bool>* wanted = nullptr) && {
     wanted_ = wanted;
+    return run();
+  }
+  std::vector<bool> find_waves(const Slice& decided) && {
+    decided_ = &decided;
+    return run();
+  }
+
+ private:
+  std::vector<bool> run() {
     walk(main_.body);
     return std::move(found_);
   }
 
- private:
   void walk(const Region& region) {
     for (const Instruction& in : region.body) {
       if (is_wanted(in)) found_[in.results[0]] = is_cheap(in);
-      if (decisions_.is_dither(in) || (in.op == Op::loop && !has_known_turns(in))) continue;
+      if (decisions_.is_dither(in) || (in.op == Op::loop && !is_open(in))) continue;
       for (const Region& inner : in.regions) walk(inner);
     }
   }
 
   bool is_wanted(const Instruction& in) const {
-    if (wanted_ == nullptr) return in.op == Op::call && is_noise(in);
+    if (wanted_ == nullptr)
+      return in.op == Op::call && (decided_ != nullptr ? is_wave(in) : is_noise(in));
     return in.results.size() == 1 && (*wanted_)[in.result()];
   }
 
   bool is_noise(const Instruction& call) const {
     return module_.functions[static_cast<std::size_t>(call.imm)].name.find("noise") !=
            std::string::npos;
+  }
+
+  bool is_wave(const Instruction& call) const {
+    const std::string& name = module_.functions[static_cast<std::size_t>(call.imm)].name;
+    return (name == "sin" || name == "cos") && !(*decided_)[call.results[0]];
+  }
+
+  // Whether what stands in the loop is looked at.
+  bool is_open(const Instruction& loop) const {
+    return wanted_ == nullptr ? has_known_turns(loop) : !decisions_.is_search(loop);
   }
 
   // Whether the loop turns equally often everywhere, however large a pixel is.
@@ -83,7 +102,10 @@ class Noises {
                  return !passes::has_partials(
                      module_.functions[static_cast<std::size_t>(in.imm)].name);
                case Op::loop:
-                 return main_.values[in.regions[0].yields[0]].rate == ir::Rate::sample;
+                 return main_.values[in.regions[0].yields[0]].rate == ir::Rate::sample &&
+                        std::ranges::any_of(in.results, [&](Value result) {
+                          return slice[result] && main_.values[result].type == ir::Type::f32;
+                        });
                case Op::input:
                  return is_place(in) && moves_unevenly(input(in).name);
                default:
@@ -116,7 +138,8 @@ class Noises {
   const Decisions& decisions_;
   const InputChanges& changes_;
   std::vector<bool> found_;
-  const std::vector<bool>* wanted_ = nullptr;  // null: noise
+  const std::vector<bool>* wanted_ = nullptr;  // null: noise, or waves
+  const Slice* decided_ = nullptr;             // null: noise
 };
 
 }  // namespace
@@ -126,12 +149,17 @@ std::vector<bool> find_noise(const ir::Module& module, const Decisions& decision
   return Noises(module, decisions, changes).find();
 }
 
+std::vector<bool> find_waves(const ir::Module& module, const Decisions& decisions,
+                             const InputChanges& changes, const Slice& decided) {
+  return Noises(module, decisions, changes).find_waves(decided);
+}
+
 std::vector<bool> find_cheap(const ir::Module& module, const Decisions& decisions,
                              const InputChanges& changes, const std::vector<bool>& wanted) {
   return Noises(module, decisions, changes).find(&wanted);
 }
 
-Value move_squared(const passes::Emit& emit, const Instruction& call) {
+Value move_squared(const passes::Emit& emit, const Instruction& call, bool is_wave) {
   Value along[2];
   for (std::int32_t k = 0; k < 2; ++k) {
     Value sum = emit.number(0);
@@ -143,7 +171,8 @@ Value move_squared(const passes::Emit& emit, const Instruction& call) {
     }
     along[k] = sum;
   }
-  return emit(Op::fmax, {along[0], along[1]});
+  const Value moved = emit(Op::fmax, {along[0], along[1]});
+  return is_wave ? emit.mul(moved, emit.number(cells_of_wave * cells_of_wave)) : moved;
 }
 
 }  // namespace pse::antialias

@@ -8,6 +8,7 @@
 
 #include "ir/module.h"
 #include "passes/emit.h"
+#include "passes/slice.h"
 #include "stream/sample_source.h"
 
 namespace pse::antialias {
@@ -22,6 +23,10 @@ struct Decisions;
 std::vector<bool> find_noise(const ir::Module& module, const Decisions& decisions,
                              const InputChanges& changes);
 
+// Likewise sines and cosines that no decision is computed from: an edge of waves is an edge.
+std::vector<bool> find_waves(const ir::Module& module, const Decisions& decisions,
+                             const InputChanges& changes, const passes::Slice& decided);
+
 // Likewise of the instructions with one result that are wanted, those whose slopes are cheap to
 // tell.
 std::vector<bool> find_cheap(const ir::Module& module, const Decisions& decisions,
@@ -29,7 +34,11 @@ std::vector<bool> find_cheap(const ir::Module& module, const Decisions& decision
 
 // How far the place of a call of noise moves from pixel to pixel, squared, in lattice cells: along
 // the rows or the columns, whichever is more. Asks by `slope` instructions.
-ir::Value move_squared(const passes::Emit& emit, const ir::Instruction& call);
+ir::Value move_squared(const passes::Emit& emit, const ir::Instruction& call, bool is_wave);
+
+// A wave is taken for noise of cells so wide in radians: between its neighbours nine samples still
+// tell its mean (smooth.h) where noise is fine.
+inline constexpr float cells_of_wave = 0.203f;
 
 // Noise whose place moves by more is fine.
 inline constexpr float most_move_squared = 0.2f;

@@ -39,8 +39,8 @@ struct Way {
 
 class Paths {
  public:
-  Paths(Function& function, const Decisions& decisions, float reach)
-      : function_(function), decisions_(decisions), reach_(reach) {}
+  Paths(Function& function, const Decisions& decisions, Roots roots, float reach)
+      : function_(function), decisions_(decisions), roots_(std::move(roots)), reach_(reach) {}
 
   bool has_searches() const { return has_searches_; }
 
@@ -66,7 +66,8 @@ class Paths {
         way.ends = with_ends(Emit(function_, out), std::vector(written.results), way.ends);
       else if (jumps)
         way.path = outcome(Emit(function_, out), Instruction(written), way.path);
-      else if (way.fine != no_value && is_noise(written))
+      else if (way.fine != no_value &&
+               (is(decisions_.noises, written) || is(decisions_.waves, written)))
         way.fine = with_move(Emit(function_, out), Instruction(written), way.fine);
       else if (way.ends != no_value && is_ray(written))
         way.ends = with_met(Emit(function_, out), std::vector(written.results), way.ends);
@@ -94,20 +95,19 @@ class Paths {
     return cut_of(op) == Cut::kink && decisions_.creases[result];
   }
 
-  bool is_noise(const Instruction& in) const {
-    return in.op == Op::call && in.results[0] < decisions_.noises.size() &&
-           decisions_.noises[in.results[0]];
+  static bool is(const std::vector<bool>& calls, const Instruction& in) {
+    return in.op == Op::call && in.results[0] < calls.size() && calls[in.results[0]];
   }
   bool is_ray(const Instruction& in) const {
-    return in.op == Op::external && in.results[0] < decisions_.rays.size() &&
+    return in.op == Op::external && !in.results.empty() && in.results[0] < decisions_.rays.size() &&
            decisions_.rays[in.results[0]];
   }
-  static Value with_move(const Emit& emit, const Instruction& call, Value farthest) {
-    return emit(Op::fmax, {farthest, move_squared(emit, call)});
+  Value with_move(const Emit& emit, const Instruction& call, Value farthest) const {
+    return emit(Op::fmax, {farthest, move_squared(emit, call, is(decisions_.waves, call))});
   }
 
   Value with_edge(const Emit& emit, const Instruction& decision, Value before) const {
-    return emit.choose(is_near(emit, decision, reach_), emit.number(1), before);
+    return emit.choose(is_near(emit, decision, roots_, reach_), emit.number(1), before);
   }
 
   Value outcome(const Emit& emit, const Instruction& in, Value path) {
@@ -257,6 +257,7 @@ class Paths {
 
   Function& function_;
   const Decisions& decisions_;
+  const Roots roots_;
   float reach_;
   bool has_searches_ = false;
   std::uint32_t state_ = 1;
@@ -292,7 +293,7 @@ void add_path(ir::Module& module, const Decisions& decisions, float reach) {
   const Value still = decisions.any_noise ? first.number(0) : no_value;
   const Value straight = decisions.any_bent ? first.number(0) : no_value;
   const Way none{first.integer(0), first.number(0), still, straight};
-  Paths paths(main, decisions, reach);
+  Paths paths(main, decisions, Roots(module), reach);
   const Way way = paths.walk(main.body, none);
   main.body.body.insert(main.body.body.begin(), std::make_move_iterator(start.begin()),
                         std::make_move_iterator(start.end()));

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ir/verifier.h"
@@ -291,11 +292,22 @@ TEST(Dither, PlacesInPixelsAreAsGoodAsOthers) {
   EXPECT_TRUE(decides("c = select(fract(px / 4) < 0.5, 1, 0)\n"));
   EXPECT_TRUE(decides("c = select(norm([px py] / 100 - 1) < 0.5, 1, 0)\n"));
   EXPECT_TRUE(decides("c = select(hash(u) < 0.5 + px, 1, 0)\n"));
-  // A cell of many pixels draws its chance once.
-  EXPECT_TRUE(decides("c = select(hash(floor(px / 24), floor(py / 8)) < 0.3, 1, 0)\n"));
-  EXPECT_TRUE(
-      decides("i = floor(px / 5)\nc = select(hash(i + floor((py + 2 * i) / 7)) < u, 1, 0)\n"));
   EXPECT_TRUE(decides("c = select(u < 0.5, 1, 0) + hash(px, py)\n"));
+}
+
+// A cell of many pixels draws its chance once: what is decided by that has edges, beside those of
+// the cells.
+TEST(Dither, ChancesOfCellsAreNone) {
+  const auto forks = [](const char* text) {
+    CompiledFront front = lowered(text);
+    passes::remove_dead(front.module);
+    const Decisions found = find_decisions(front.module);
+    return std::ranges::count(found.forks, true);
+  };
+  EXPECT_EQ(forks("c = select(hash(floor(px / 24)) < u, 1, 0)\n"), 2);
+  EXPECT_EQ(forks("i = floor(px / 5)\nc = select(hash(2 * i + 1, i * i) < u, 1, 0)\n"), 2);
+  EXPECT_EQ(forks("c = select(hash(floor(px / 24), px) < u, 1, 0)\n"), 1);
+  EXPECT_EQ(forks("c = select(hash(floor(px), floor(px / 24)) < u, 1, 0)\n"), 1);
 }
 
 }  // namespace

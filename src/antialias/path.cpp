@@ -224,23 +224,30 @@ class Paths {
     return sum;
   }
 
-  // The sum with what a ray has met: how bright or how visible that is, or where, which way it is
-  // turned, and which object. The places themselves change all along it.
+  // The sum with what a ray has met: how bright or how visible that is, or which object. Where it
+  // is and which way it is turned may change much from pixel to pixel on one round object too, so
+  // that less is made of them. The places themselves change all along it.
   Value with_met(const Emit& emit, const std::vector<Value>& results, Value sum) {
-    constexpr std::array parts_of_hit = {0, 7, 8, 9, 12};  // surface/trace_call.h
+    struct Part {
+      std::size_t of_hit;  // surface/trace_call.h
+      float weight;
+    };
+    constexpr std::array parts_of_hit = {Part{0, 0.25f}, Part{7, 0.12f}, Part{8, 0.12f},
+                                         Part{9, 0.12f}, Part{12, 1.0f}};
     has_searches_ = true;
     if (results.size() <= 4) {
       for (const Value result : results) sum = with_end(emit, result, sum);
     } else {
-      for (const int part : parts_of_hit)
-        sum = with_end(emit, results[static_cast<std::size_t>(part)], sum);
+      for (const Part& part : parts_of_hit)
+        sum = with_end(emit, results[part.of_hit], sum, part.weight);
     }
     return sum;
   }
 
-  Value with_end(const Emit& emit, Value end, Value sum) {
+  Value with_end(const Emit& emit, Value end, Value sum, float part = 1) {
     // 1 to 2, so that no two ends make up for each other.
-    const Value weight = emit.number(1 + static_cast<float>(next_factor() & 0xfff0) * 0x1p-16f);
+    const float spread = 1 + static_cast<float>(next_factor() & 0xfff0) * 0x1p-16f;
+    const Value weight = emit.number(part * spread);
     const ir::Type type = function_.values[end].type;
     if (type == ir::Type::boolean) return emit.add(sum, emit.choose(end, weight, emit.number(0)));
     const Value value = type == ir::Type::i32 ? emit(Op::i2f, {end}) : end;

@@ -109,34 +109,34 @@ std::optional<Value> SlopeBounds::of(const passes::Emit& emit, Value value) cons
   }
 }
 
-Value is_near(const passes::Emit& emit, const Instruction& decision, float reach,
-              const SlopeBounds& bounds) {
+Value is_near(const passes::Emit& emit, const Instruction& decision, const Roots& roots,
+              const SlopeBounds& bounds, float reach) {
   const auto slope = [&](Value of, std::int32_t k) {
     return emit.function().values[of].rate == ir::Rate::sample ? emit(Op::slope, {of}, k)
                                                                : emit.number(0);
   };
-  const Value a = decision.operands[0];
   const Cut cut = cut_of(decision.op);
   const bool compares = cut == Cut::compare;
+  Roots::Sides sides{decision.operands[0], ir::no_value};
+  if (compares) sides = roots.under(emit, {sides.a, decision.operands[1]});
+  const auto [a, b] = sides;
   Value f = a;
   if (compares) {
-    f = emit.sub(a, decision.operands[1]);
+    f = emit.sub(a, b);
   } else {
     // To the nearer step.
     const Value shifted = cut == Cut::half ? emit.sub(a, emit.number(0.5f)) : a;
     f = emit.sub(shifted, emit(Op::fround, {shifted}));
   }
   const auto of_a = bounds.of(emit, a);
-  const auto of_b = compares ? bounds.of(emit, decision.operands[1]) : emit.number(0);
+  const auto of_b = compares ? bounds.of(emit, b) : emit.number(0);
   if (of_a && of_b) {
     const Value steepest = emit.add(*of_a, *of_b);
     return emit.less(emit(Op::fabs, {f}), emit.mul(steepest, emit.number(reach)));
   }
   Value along_x = slope(a, 0), along_y = slope(a, 1);
-  if (compares && emit.function().values[decision.operands[1]].rate == ir::Rate::sample) {
-    const Value b = decision.operands[1];
+  if (compares && emit.function().values[b].rate == ir::Rate::sample)
     along_x = emit.sub(along_x, slope(b, 0)), along_y = emit.sub(along_y, slope(b, 1));
-  }
   const Value steepness = emit(Op::fma, {along_x, along_x, emit.mul(along_y, along_y)});
   return emit.less(emit.mul(f, f), emit.mul(steepness, emit.number(reach * reach)));
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "antialias/forms.h"
+#include "antialias/roots.h"
 #include "passes/emit.h"
 #include "stream/sample_source.h"
 
@@ -45,7 +46,7 @@ class SlopeBounds {
 // Whether the edge of a comparison or a step is within `reach` pixels of the sample by f / |f'|,
 // which is never too far for what bends like a distance or its square; where a bound on |f'| is
 // known, by that. Asks by `slope` instructions.
-ir::Value is_near(const passes::Emit& emit, const ir::Instruction& decision, float reach,
-                  const SlopeBounds& bounds);
+ir::Value is_near(const passes::Emit& emit, const ir::Instruction& decision, const Roots& roots,
+                  const SlopeBounds& bounds, float reach);
 
 }  // namespace pse::antialias

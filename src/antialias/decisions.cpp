@@ -54,6 +54,11 @@ bool is_of_noise(const ir::Module& module, Value value) {
   return uses_noise(module, slice, module.main().body);
 }
 
+bool is_ray(const ir::Module& module, const Instruction& external) {
+  const std::string& name = module.externals[static_cast<std::size_t>(external.imm)].name;
+  return name == "trace" || name == "visible" || name == "radiance";
+}
+
 void find_defined(const Region& region, std::vector<bool>& defined) {
   for (const Instruction& in : region.body) {
     for (const Value result : in.results) defined[result] = true;
@@ -179,7 +184,12 @@ Decisions find_decisions(ir::Module& module, const InputChanges& changes) {
   });
   found.any = std::ranges::find(found.forks, true) != found.forks.end();
   find_searches(main, found);
-  found.noises = find_noise(module, found, changes);
+  found.rays.resize(main.values.size());
+  for_each(main.body, found, [&](const Instruction& in, bool) {
+    if (in.op == Op::external && is_ray(module, in) && differs(in))
+      found.rays[in.results[0]] = found.any = true;
+  });
+  found.noises = find_noise(module, found, changes, lines);
   found.any_noise =
       found.noises.others || std::ranges::find(found.noises.told, true) != found.noises.told.end();
   found.bent = find_bent(module, found, changes);

@@ -39,9 +39,12 @@ struct Decisions {
   std::vector<bool> expected;  // what expectations alone need (ir/expectations.h): likewise none
   std::vector<bool> searched;  // the conditions of loops that search
   std::vector<bool> ends;      // the results of these that are used
-  Noises noises;               // what may be finer than a pixel (fine.h)
-  std::vector<bool> bent;      // jumps that no pixel's middle may show (bent.h)
-  bool any = false;            // whether there is a fork
+  // By their first result, the calls that send rays (docs/surfaces.md): what these meet jumps where
+  // shadows and reflections have edges.
+  std::vector<bool> rays;
+  Noises noises;           // what may be finer than a pixel (fine.h)
+  std::vector<bool> bent;  // jumps that no pixel's middle may show (bent.h)
+  bool any = false;        // whether there is a fork, or a ray
   bool any_jump = false;
   bool any_noise = false;
   bool any_bent = false;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "antialias/edge_state.h"
+#include "antialias/roots.h"
 #include "antialias/rotate.h"
 #include "antialias/searches.h"
 #include "passes/deriver.h"
@@ -21,7 +22,8 @@ using passes::Slopes;
 
 class EdgeWatcher : public passes::Watcher {
  public:
-  explicit EdgeWatcher(const Decisions& decisions) : decisions_(decisions) {}
+  EdgeWatcher(const Decisions& decisions, Roots roots)
+      : decisions_(decisions), roots_(std::move(roots)) {}
 
   std::vector<Value> start(const Emit& emit) override {
     const EdgeState edges = start_edges(emit);
@@ -36,9 +38,13 @@ class EdgeWatcher : public passes::Watcher {
         (!decisions_.forks[result] && !decisions_.bends[result]))
       return;
     const bool between = in.operands.size() == 2;
-    const Value a = in.operands[0];
+    const Roots::Sides sides =
+        between && cut_of(in.op) == Cut::compare
+            ? roots_.under(emit, {in.operands[0], in.operands[1]})
+            : Roots::Sides{in.operands[0], between ? in.operands[1] : no_value};
+    const Value a = sides.a;
     const Slopes of_a = slopes_of(a);
-    const Slopes of_b = between ? slopes_of(in.operands[1]) : Slopes{no_value, no_value};
+    const Slopes of_b = between ? slopes_of(sides.b) : Slopes{no_value, no_value};
     const Slopes none = {no_value, no_value};
     if (of_a == none && of_b == none) return;
 
@@ -50,7 +56,7 @@ class EdgeWatcher : public passes::Watcher {
     if (cut == Cut::compare || (cut == Cut::kink && between)) {
       for (std::size_t k = 0; k < slope.size(); ++k)
         if (of_b[k] != no_value) slope[k] = emit.sub(slope[k], of_b[k]);
-      edges = see_edge(emit, edges, emit.sub(a, in.operands[1]), slope[0], slope[1]);
+      edges = see_edge(emit, edges, emit.sub(a, sides.b), slope[0], slope[1]);
     } else if (cut == Cut::kink) {
       edges = see_edge(emit, edges, a, slope[0], slope[1]);
     } else {
@@ -65,6 +71,7 @@ class EdgeWatcher : public passes::Watcher {
 
  private:
   const Decisions& decisions_;
+  const Roots roots_;
 };
 
 // Every input of the samples has slopes, unless it is known not to.
@@ -111,7 +118,7 @@ void derive_edges(ir::Module& module, const Decisions& found, const InputChanges
   widen_steps(module.main(), module.main().body);
   // Loops' heads are copied behind and into the loops, so that the edges that they decide count.
   rotate_loops(module.main(), decisions);
-  EdgeWatcher watcher(decisions);
+  EdgeWatcher watcher(decisions, Roots(module));
   const std::vector<Value> edges =
       passes::derive_main(module, slopes_of_inputs(module, changes), {.watcher = &watcher});
   module.outputs.clear();

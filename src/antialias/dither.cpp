@@ -68,8 +68,9 @@ class Chances {
     const bool is_step = cut == Cut::whole || cut == Cut::half;
     const float change = change_[in.operands[0]];
     if (!hashes_) return is_step && change == every_pixel;
-    // A hash, or what is left of a number without its whole part.
-    return in.op == Op::f2bits ||
+    // A hash, but of whole numbers that stay from pixel to pixel, or what is left of a number
+    // without its whole part.
+    return (in.op == Op::f2bits && change != 0) ||
            (in.op == Op::fsub && whole_of_[in.operands[1]] == in.operands[0]) ||
            (is_step && change >= every_pixel);
   }
@@ -79,6 +80,7 @@ class Chances {
     const auto change = [&](std::size_t k) { return change_[in.operands[k]]; };
     const auto size = [&](std::size_t k) { return std::abs(constant_[in.operands[k]]); };
     const auto product = [&](std::size_t a, std::size_t b) {
+      if (change(a) == 0 && change(b) == 0) return 0.0f;
       return change(a) == 0 ? change(b) * size(a) : change(b) == 0 ? change(a) * size(b) : unknown;
     };
     switch (in.op) {
@@ -100,7 +102,8 @@ class Chances {
       case Op::fceil:
       case Op::ftrunc:
       case Op::fround:
-        return 0;
+      case Op::f2i:
+        return change(0) < every_pixel ? 0 : unknown;
       case Op::call: {
         const std::string& name = module_.functions[static_cast<std::size_t>(in.imm)].name;
         return name == "sin" || name == "cos" ? change(0) : unknown;

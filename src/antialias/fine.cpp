@@ -33,20 +33,28 @@ class Search {
         changes_(changes),
         found_{std::vector<bool>(main_.values.size())} {}
 
-  Noises find(const std::vector<bool>* wanted = nullptr) && {
-    wanted_ = wanted;
+  Noises find(const std::vector<bool>& wanted) && {
+    wanted_ = &wanted;
+    return run();
+  }
+  Noises find_noise(const Slice& decided) && {
+    decided_ = &decided;
+    return run();
+  }
+
+ private:
+  Noises run() {
     walk(main_.body);
     return std::move(found_);
   }
 
- private:
   void walk(const Region& region) {
     for (const Instruction& in : region.body) {
       if (is_wanted(in) && differs(in)) {
         found_.told[in.results[0]] = is_cheap(in);
         found_.others = found_.others || !found_.told[in.results[0]];
       }
-      if (decisions_.is_dither(in) || (in.op == Op::loop && turns_differ(in))) continue;
+      if (decisions_.is_dither(in) || (in.op == Op::loop && !is_open(in))) continue;
       for (const Region& inner : in.regions) walk(inner);
     }
   }
@@ -58,11 +66,17 @@ class Search {
 
   bool is_noise(const Instruction& call) const {
     const std::string& name = module_.functions[static_cast<std::size_t>(call.imm)].name;
-    return name.find("noise") != std::string::npos || is_wave(name);
+    return name.find("noise") != std::string::npos ||
+           (is_wave(name) && !(*decided_)[call.results[0]]);
   }
 
   bool turns_differ(const Instruction& loop) const {
     return main_.values[loop.regions[0].yields[0]].rate == ir::Rate::sample;
+  }
+
+  // Whether what stands in the loop is looked at.
+  bool is_open(const Instruction& loop) const {
+    return wanted_ == nullptr ? !turns_differ(loop) : !decisions_.is_search(loop);
   }
 
   bool differs(const Instruction& in) const {
@@ -87,7 +101,9 @@ class Search {
                  return !passes::has_partials(
                      module_.functions[static_cast<std::size_t>(in.imm)].name);
                case Op::loop:
-                 return turns_differ(in);
+                 return turns_differ(in) && std::ranges::any_of(in.results, [&](Value result) {
+                          return slice[result] && main_.values[result].type == ir::Type::f32;
+                        });
                case Op::input:
                  return is_place(in) && moves_unevenly(input(in).name);
                default:
@@ -120,19 +136,20 @@ class Search {
   const Decisions& decisions_;
   const InputChanges& changes_;
   Noises found_;
-  const std::vector<bool>* wanted_ = nullptr;  // null: noise
+  const std::vector<bool>* wanted_ = nullptr;  // null: noise and waves
+  const Slice* decided_ = nullptr;             // of these
 };
 
 }  // namespace
 
 Noises find_noise(const ir::Module& module, const Decisions& decisions,
-                             const InputChanges& changes) {
-  return Search(module, decisions, changes).find();
+                  const InputChanges& changes, const Slice& decided) {
+  return Search(module, decisions, changes).find_noise(decided);
 }
 
 std::vector<bool> find_cheap(const ir::Module& module, const Decisions& decisions,
                              const InputChanges& changes, const std::vector<bool>& wanted) {
-  return Search(module, decisions, changes).find(&wanted).told;
+  return Search(module, decisions, changes).find(wanted).told;
 }
 
 Value move_squared(const passes::Emit& emit, const ir::Module& module, const Instruction& call) {

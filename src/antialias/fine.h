@@ -8,13 +8,15 @@
 
 #include "ir/module.h"
 #include "passes/emit.h"
+#include "passes/slice.h"
 #include "stream/sample_source.h"
 
 namespace pse::antialias {
 
 struct Decisions;
 
-// Calls of the main function whose results may change within a pixel: noise and waves.
+// Calls of the main function whose results may change within a pixel: noise, and sines and cosines
+// that no decision is computed from, since an edge of waves is an edge.
 struct Noises {
   // By their first result: those whose fineness is cheap to tell.
   std::vector<bool> told;
@@ -24,9 +26,9 @@ struct Noises {
 };
 
 // Fineness is dear to tell of what is asked at places that are made of other noise, or that do not
-// come from a flat picture. Values have their rates.
+// come from a flat picture. Values have their rates; `decided`: what jumps are computed from.
 Noises find_noise(const ir::Module& module, const Decisions& decisions,
-                             const InputChanges& changes);
+                  const InputChanges& changes, const passes::Slice& decided);
 
 // Likewise of the instructions with one result that are wanted, those whose slopes are cheap to
 // tell.

@@ -58,8 +58,7 @@ std::size_t find_fine(const Tile& tile, Pixel* found) {
         const int k = __builtin_ctz(wanted);
         *next++ = {.x = tile.rect.x0 + static_cast<int>(i) + k,
                    .y = y,
-                   .grainy = (grain >> k & 1) != 0,
-                   .wild = (wild >> k & 1) != 0};
+                   .grain = static_cast<Grain>((grain >> k & 1) + (wild >> k & 1))};
       }
     }
   return static_cast<std::size_t>(next - found);

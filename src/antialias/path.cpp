@@ -32,7 +32,7 @@ using passes::Emit;
 // What is carried along through the program.
 struct Way {
   Value path;
-  Value ends;  // the sum of what searches ended with; no_value inside of them
+  Value ends;  // the sum of what searches ended with and rays met; no_value inside of searches
   Value fine;  // the farthest move of noise; likewise, and where there is none
   Value bent;  // not 0: a jump that may be unseen is near; likewise
 };
@@ -43,6 +43,7 @@ class Paths {
       : module_(module),
         function_(module.main()),
         decisions_(decisions),
+        roots_(module),
         bounds_(module, decisions),
         reach_(reach) {}
 
@@ -72,6 +73,8 @@ class Paths {
         way.path = outcome(Emit(function_, out), Instruction(written), way.path);
       else if (way.fine != no_value && is_noise(written))
         way.fine = with_move(Emit(function_, out), Instruction(written), way.fine);
+      else if (way.ends != no_value && is_ray(written))
+        way.ends = with_met(Emit(function_, out), std::vector(written.results), way.ends);
       if (jumps && way.bent != no_value && decisions_.bent[out[at].result()])
         way.bent = with_edge(Emit(function_, out), Instruction(out[at]), way.bent);
     }
@@ -100,12 +103,16 @@ class Paths {
     const std::vector<bool>& told = decisions_.noises.told;
     return in.op == Op::call && in.results[0] < told.size() && told[in.results[0]];
   }
+  bool is_ray(const Instruction& in) const {
+    return in.op == Op::external && !in.results.empty() && in.results[0] < decisions_.rays.size() &&
+           decisions_.rays[in.results[0]];
+  }
   Value with_move(const Emit& emit, const Instruction& call, Value farthest) const {
     return emit(Op::fmax, {farthest, move_squared(emit, module_, call)});
   }
 
   Value with_edge(const Emit& emit, const Instruction& decision, Value before) const {
-    return emit.choose(is_near(emit, decision, reach_, bounds_), emit.number(1), before);
+    return emit.choose(is_near(emit, decision, roots_, bounds_, reach_), emit.number(1), before);
   }
 
   Value outcome(const Emit& emit, const Instruction& in, Value path) {
@@ -217,19 +224,39 @@ class Paths {
   // The sum with what a search ends with.
   Value with_ends(const Emit& emit, const std::vector<Value>& results, Value sum) {
     has_searches_ = true;
-    for (const Value end : results) {
-      if (end >= decisions_.ends.size() || !decisions_.ends[end]) continue;
-      // 1 to 2, so that no two ends make up for each other.
-      const Value weight = emit.number(1 + static_cast<float>(next_factor() & 0xfff0) * 0x1p-16f);
-      const ir::Type type = function_.values[end].type;
-      if (type == ir::Type::boolean) {
-        sum = emit.add(sum, emit.choose(end, weight, emit.number(0)));
-      } else {
-        const Value value = type == ir::Type::i32 ? emit(Op::i2f, {end}) : end;
-        sum = emit(Op::fma, {size(emit, value), weight, sum});
-      }
+    for (const Value end : results)
+      if (end < decisions_.ends.size() && decisions_.ends[end]) sum = with_end(emit, end, sum);
+    return sum;
+  }
+
+  // The sum with what a ray has met: how bright or how visible that is, or which object. Where it
+  // is and which way it is turned may change much from pixel to pixel on one round object too, so
+  // that less is made of them. The places themselves change all along it.
+  Value with_met(const Emit& emit, const std::vector<Value>& results, Value sum) {
+    struct Part {
+      std::size_t of_hit;  // surface/trace_call.h
+      float weight;
+    };
+    constexpr std::array parts_of_hit = {Part{0, 0.25f}, Part{7, 0.12f}, Part{8, 0.12f},
+                                         Part{9, 0.12f}, Part{12, 1.0f}};
+    has_searches_ = true;
+    if (results.size() <= 4) {
+      for (const Value result : results) sum = with_end(emit, result, sum);
+    } else {
+      for (const Part& part : parts_of_hit)
+        sum = with_end(emit, results[part.of_hit], sum, part.weight);
     }
     return sum;
+  }
+
+  Value with_end(const Emit& emit, Value end, Value sum, float part = 1) {
+    // 1 to 2, so that no two ends make up for each other.
+    const float spread = 1 + static_cast<float>(next_factor() & 0xfff0) * 0x1p-16f;
+    const Value weight = emit.number(part * spread);
+    const ir::Type type = function_.values[end].type;
+    if (type == ir::Type::boolean) return emit.add(sum, emit.choose(end, weight, emit.number(0)));
+    const Value value = type == ir::Type::i32 ? emit(Op::i2f, {end}) : end;
+    return emit(Op::fma, {size(emit, value), weight, sum});
   }
 
   // The logarithm to base 2 of 1 + |v|, nearly, with the sign of v; finite.
@@ -243,6 +270,7 @@ class Paths {
   const ir::Module& module_;
   Function& function_;
   const Decisions& decisions_;
+  const Roots roots_;
   const SlopeBounds bounds_;
   float reach_;
   bool has_searches_ = false;

@@ -79,8 +79,8 @@ struct Work {
   std::vector<Bent> bent;
   std::vector<Pixel> between;  // between the bends of a steep ramp
   std::vector<Pixel> fine;     // memory of find_fine_pixels()
-  std::vector<Pixel> noisy;    // wild, and no edge is near
-  std::vector<Pixel> halved;   // likewise fine, but not wild
+  std::vector<Pixel> noisy;    // of these, with fine grain and no edge near
+  std::vector<Pixel> halved;   // the others with no edge near
   HalfGrid halves;             // the samples of these
   Places places;               // where the next run is to be
   Results results;             // of the last run

@@ -220,9 +220,9 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
     return a.y != b.y ? a.y < b.y : a.x < b.x;
   };
   const auto add_fine = [&](const Pixel& pixel) {
-    if (half_means_ && !pixel.wild)
+    if (half_means_ && pixel.grain != Grain::fine)
       work.halved.push_back(pixel);
-    else if (pixel.grainy)
+    else if (pixel.grain != Grain::none)
       work.noisy.push_back(pixel);
   };
   auto next = fine.begin();
@@ -230,7 +230,7 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
     while (next != fine.end() && is_before(*next, pixel)) add_fine(*next++);
     if (next != fine.end() && !is_before(pixel, *next)) {
       --counts.filtered;
-      if ((next++)->grainy) {
+      if ((next++)->grain != Grain::none) {
         // What an edge parts is not clear either.
         work.unclear.push_back({{.x = pixel.x, .y = pixel.y, .silhouette = pixel.silhouette}});
         continue;

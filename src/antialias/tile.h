@@ -28,6 +28,13 @@ struct Tile {
   const float* ends() const { return planes.size() > outputs + 1 ? planes[outputs + 1] : nullptr; }
 };
 
+// How strong noise is where it is fine.
+enum class Grain : std::uint8_t {
+  none,
+  coarse,  // an edge's two sides do not tell of the pixel
+  fine,    // nor do samples half a pixel apart
+};
+
 struct Pixel {
   int x = 0, y = 0;
   bool silhouette = false;  // a neighbour shows another object
@@ -44,11 +51,9 @@ struct Pixel {
   // The program does not tell where the edges are: a search ends elsewhere, or hardly a neighbour
   // goes the same way.
   bool untold = false;
-  // Noise is so fine and strong here that an edge's two sides do not tell of the pixel; and so fine
-  // that samples half a pixel apart do not either.
-  bool grainy = false, wild = false;
   // Bit k: some output jumps towards neighbour k of `around`.
   std::uint8_t jumps = 0;
+  Grain grain = Grain::none;
 
   // The pixels around one: every other one is opposite to the one before.
   static constexpr int around[8][2] = {{1, 0}, {-1, 0}, {-1, 1}, {1, -1},

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ir/verifier.h"
@@ -279,6 +280,7 @@ TEST(Dither, ChancesOfAPixelAreNoEdges) {
   EXPECT_FALSE(decides("c = select(hash(px, py) < u, 1, 0)\n"));
   EXPECT_FALSE(decides("c = select(hash(floor(px)) < 0.3, 1, 0)\n"));
   EXPECT_FALSE(decides("c = select(floor(px) % 2 < 1, 1, 0)\n"));
+  EXPECT_FALSE(decides("c = select(hash(2 * floor(px) + 7) < 0.3, 1, 0)\n"));
   EXPECT_FALSE(decides("c = select(fract(43758.5 * sin(12.99 * px + 78.2 * py)) < u, 1, 0)\n"));
   EXPECT_FALSE(decides("c = select(fract(52.98 * fract(0.067 * px + 0.0058 * py)) < u, 1, 0)\n"));
   // A ray that begins at a chance goes by it all its way.
@@ -291,6 +293,21 @@ TEST(Dither, PlacesInPixelsAreAsGoodAsOthers) {
   EXPECT_TRUE(decides("c = select(norm([px py] / 100 - 1) < 0.5, 1, 0)\n"));
   EXPECT_TRUE(decides("c = select(hash(u) < 0.5 + px, 1, 0)\n"));
   EXPECT_TRUE(decides("c = select(u < 0.5, 1, 0) + hash(px, py)\n"));
+}
+
+// A cell of many pixels draws its chance once: what is decided by that has edges, beside those of
+// the cells.
+TEST(Dither, ChancesOfCellsAreNone) {
+  const auto forks = [](const char* text) {
+    CompiledFront front = lowered(text);
+    passes::remove_dead(front.module);
+    const Decisions found = find_decisions(front.module);
+    return std::ranges::count(found.forks, true);
+  };
+  EXPECT_EQ(forks("c = select(hash(floor(px / 24)) < u, 1, 0)\n"), 2);
+  EXPECT_EQ(forks("i = floor(px / 5)\nc = select(hash(2 * i + 1, i * i) < u, 1, 0)\n"), 2);
+  EXPECT_EQ(forks("c = select(hash(floor(px / 24), px) < u, 1, 0)\n"), 1);
+  EXPECT_EQ(forks("c = select(hash(floor(px), floor(px / 24)) < u, 1, 0)\n"), 1);
 }
 
 }  // namespace

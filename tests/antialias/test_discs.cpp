@@ -163,6 +163,28 @@ TEST(Discs, ThatAreStretchedAreSeen) {
     }
 }
 
+// Said where slopes were thought dear, or are infinite: in a loop that leaves at the first disc,
+// and by a root that is no number beyond the edge.
+TEST(Discs, InLoopsThatLeaveAndUnderRootsAreTheSame) {
+  for (const double radius : {0.2, 0.5, 0.8, 1.3, 5.2})
+    for (const double at : {6.0, 6.5, 6.3}) {
+      const std::string place = "_p = [u, 1 - v] * 13 - " + text(at) + "\n";
+      for (const std::string& program :
+           {"c = 0\nfor i in [1 .. 3]\n    if length(_p - [90 * (i - 2), 0]) < " + text(radius) +
+                "\n        c = 1\n        break\n",
+            "c = sqrt(1 - dot(_p, _p) / " + text(radius * radius) + ") > 0\n"}) {
+        const Picture picture =
+            render(place + program,
+                   {.width = 13, .height = 13, .interpret = true, .antialias = procedural()});
+        for (int y = 0; y < 13; ++y)
+          for (int x = 0; x < 13; ++x)
+            EXPECT_NEAR(picture.at(x, y),
+                        share_of_disc(std::hypot(x + 0.5 - at, y + 0.5 - at), radius), one_step)
+                << program << at << ": " << x << ' ' << y;
+      }
+    }
+}
+
 // Dots of a quarter of a pixel to one and a half, most of them between the samples.
 const char* dots =
     "_p = [u, 1 - v] * 32\n_cell = floor(_p / 8)\n_d = _p - 8 * _cell - 3 - 2 * [hash(_cell.x, "
@@ -195,13 +217,16 @@ TEST(Discs, OnlyWhatBendsIsAskedFor) {
         "c = (floor(x / (1.2 - y)) + floor(1 / (1.2 - y))) % 2\n",
         "_w = 1 / (3 - y)\nc = 0.7 * x * _w + 2 * _w < 1 ? 1 : 0\n",
         "c = max(abs(x), abs(y)) < 0.5 ? 1 : 0\n", "c = Noise(3 * x, y) > 0 ? 1 : 0\n",
-        "c = 0\nfor i in [1 .. 4]\n    if u * i < 1\n        c += 1\n"})
+        "c = 0\nfor i in [1 .. 4]\n    if u * i < 1\n        c += 1\n",
+        // Iterates: the slopes of all turns before.
+        "z = u\nc = 0\nwhile c < 9 and z * z < 4\n    z = z * z + v\n    c += 1\n"})
     EXPECT_FALSE(asks(text)) << text;
   for (const char* text :
        {"c = length([x y]) < 0.1 ? 1 : 0\n", "c = x * x + y * y < 0.1 ? 1 : 0\n",
         "c = x * y > 0.1 ? 1 : 0\n", "c = sin(9 * x) > 0.2 ? 1 : 0\n",
         "c = x / (2 - x - y) < y ? 1 : 0\n", "c = floor(9 * length([x y]))\n",
-        "c = 0\nfor i in [1 .. 4]\n    if length([x - i / 4, y]) < 0.1\n        c += 1\n"})
+        "c = 0\nfor i in [1 .. 4]\n    if length([x - i / 4, y]) < 0.1\n        c += 1\n",
+        "c = 0\nfor i in [1 .. 4]\n    if length([x - i / 4, y]) < 0.1 break\n    c += 1\n"})
     EXPECT_TRUE(asks(text)) << text;
 }
 

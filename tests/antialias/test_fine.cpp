@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "antialias/decisions.h"
 #include "antialias/smooth.h"
+#include "passes/passes.h"
 #include "picture.h"
 
 namespace pse::antialias::test {
@@ -118,6 +120,31 @@ TEST(Fine, NeighboursAreASampleMore) {
     error_of_many += std::pow(many.plane()[i] - truth.plane()[i], 2.0);
   }
   EXPECT_LT(error, 0.95 * error_of_many);
+}
+
+// Waves shorter than three pixels, of which the neighbours tell nothing. An edge of waves is an
+// edge.
+TEST(Fine, WavesToo) {
+  constexpr double most = 0.84 * pixels;
+  // 2.2 radians from pixel to pixel.
+  EXPECT_EQ(sampled("c = sin(35 * x)\n"), 0);
+  EXPECT_GT(sampled("c = sin(35.5 * x)\n"), most);
+  EXPECT_EQ(sampled("c = cos(35 * y)\n"), 0);
+  EXPECT_GT(sampled("c = cos(35.5 * y)\n"), most);
+  EXPECT_EQ(sampled("c = rotate([x y], 90).x\n"), 0);
+  const std::string zones = "c = 0.5 + 0.5 * cos(40 * (x * x + y * y))\n";
+  const Picture truth = render(zones, {.antialias = samples(256)}),
+                ours = render(zones, {.antialias = procedural()}),
+                many = render(zones, {.antialias = samples(16)});
+  double error = 0, error_of_many = 0;
+  for (std::size_t i = 0; i < truth.plane().size(); ++i) {
+    error += std::pow(ours.plane()[i] - truth.plane()[i], 2.0);
+    error_of_many += std::pow(many.plane()[i] - truth.plane()[i], 2.0);
+  }
+  EXPECT_LT(error, 0.9 * error_of_many);
+  CompiledFront edges = lowered("c = sin(90 * x) > 0.2 ? 1 : 0\n");
+  passes::remove_dead(edges.module);
+  EXPECT_FALSE(find_decisions(edges.module, image_plane_changes(std::nullopt)).any_noise);
 }
 
 // An edge is no deviation of noise.

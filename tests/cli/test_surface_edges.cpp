@@ -1,5 +1,6 @@
 // Edges on traced objects that are no edges of a program: where an object hides a part of itself or
-// two parts of it meet, and where a program's own search ends elsewhere.
+// two parts of it meet, where a program's own search ends elsewhere, and where its rays meet
+// something else.
 #include <cmath>
 
 #include "run_pse.h"
@@ -57,6 +58,48 @@ TEST_F(SurfaceEdges, WhereASearchEndsElsewhere) {
        "    s = abs(t - (p.y > 0.3 ? 1 : 2)) * 0.5\n    if s < 0.001 break\n    t -= s\n"
        "color = white * t / 3\n");
   expect_clean({"search.pse", "--on", "sphere", "--res", "64x64"});
+}
+
+// A ball on a floor. No conditional tells of its shadow, nor of what it mirrors.
+constexpr const char* room =
+    "program = \"ball.pse\"\nbackground = \"sky.pse\"\n"
+    "[camera]\neye = [1.5, 1.6, 6]\ntarget = [0, 0.4, 0]\nfov = 32\n"
+    "[[light]]\ndirection = [-0.6, 1, 0.5]\n"
+    "[[object]]\nshape = \"plane size=8\"\nprogram = \"floor.pse\"\n"
+    "[[object]]\nshape = \"sphere radius=0.6\"\nat = [0.8, 0.6, 0]\n"
+    "[[object]]\nshape = \"sphere radius=0.4\"\nat = [-0.6, 0.4, 0.5]\nprogram = \"lit.pse\"\n";
+
+TEST_F(SurfaceEdges, WhereRaysMeetSomethingElse) {
+  file("lit.pse", lit);
+  file("sky.pse", "color = [0.3 0.3 0.3]\n");
+  file("floor.pse", "color = white * (0.3 + 0.6 * visible(place, place + 20 * light_direction))\n");
+  file("room.toml", room);
+  for (const char* ball :
+       {"color = radiance(place, reflect(direction, normal)).rgb\n",
+        "h = trace(place, reflect(direction, normal))\ncolor = 0.5 + 0.4 * h.normal\n",
+        "h = trace(place, refract(direction, normal, 0.7))\n"
+        "color = radiance(h.place, direction).rgb\n"}) {
+    file("ball.pse", ball);
+    expect_clean({"room.toml", "--res", "96x96"});
+  }
+}
+
+// Rays into a direction of chance have no edge: each pixel has its own.
+TEST_F(SurfaceEdges, WhatRaysOfChanceMeetIsNoEdge) {
+  file("lit.pse", lit);
+  file("sky.pse", "color = [0.3 0.3 0.3]\n");
+  file("floor.pse",
+       "d = light_direction + 0.5 * [hash(px, py, 1) 0 hash(px, py, 2)]\n"
+       "color = white * visible(place, place + 20 * d)\n");
+  file("ball.pse", lit);
+  file("room.toml", room);
+  const Ended ended = pse({"render", "room.toml", "--res", "96x96", "--stats", "-o", "out.exr"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  // The outlines alone are sampled.
+  const std::string said = ended.out + ended.err;
+  const std::size_t at = said.find("blended, ");
+  ASSERT_NE(at, std::string::npos) << said;
+  EXPECT_LT(std::stoi(said.substr(at + 9)), 96 * 96 / 12) << said;
 }
 
 }  // namespace

@@ -179,7 +179,7 @@ TEST(Pictures, TheSameBitsInEveryPiece) {
 
 TEST(Pictures, WhatHasNoEdgesHasNoneFound) {
   for (const char* program :
-       {"c = Noise(4 * x, 4 * y)\n", "c = 0.1 * turbulence([x y])\n", "c = abs(x) + max(x, 0.1 * x)\n",
+       {"c = Noise(4 * x, 4 * y)\n", "c = 0.05 * turbulence([x y])\n", "c = abs(x) + max(x, 0.1 * x)\n",
         "_t = 0\n_d = 1\nwhile _d > 0.1\n    _d -= 0.013 + 0.01 * u\n    _t += 0.013 + 0.01 * u\nc "
         "= u + "
         "0 * _t\n",

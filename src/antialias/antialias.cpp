@@ -88,7 +88,7 @@ class Execution {
     apron_ = procedural_ ? apron_of(antialias_.filter) : smooths_ ? 1 : 0;
 
     std::optional<Refiner> all;
-    if (supersample_) all.emplace(*quiet.runner, nullptr, antialias_, programs_.outputs);
+    if (supersample_) all.emplace(*quiet.runner, nullptr, antialias_, programs_.outputs, programs_.courses);
     BatchPlan plan;
     plan.batches = tiling_.count();
     plan.capacity =
@@ -215,7 +215,7 @@ class Execution {
         edge_program_.emplace(**program, host_, unchecked);
         edges = &*edge_program_->runner;
       }
-      refiner_.emplace(*quiet_->runner, edges, antialias_, programs_.outputs);
+      refiner_.emplace(*quiet_->runner, edges, antialias_, programs_.outputs, programs_.courses);
     });
     return refiner_ && !status_.cancel ? &*refiner_ : nullptr;
   }

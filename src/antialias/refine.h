@@ -48,15 +48,19 @@ struct Refined {
 
 class Refiner {
  public:
-  // `edges` may be null: then everything is supersampled.
+  // `edges` may be null: then everything is supersampled. `courses`: those of the outputs; without
+  // any that is bent, samples half a pixel apart are not taken.
   Refiner(const PlaceRunner& program, const PlaceRunner* edges, const Options& options,
-          std::size_t outputs)
+          std::size_t outputs, std::span<const Course> courses)
       : program_(program),
         edges_(edges),
         options_(options),
         outputs_(outputs),
         patterns_(options.filter, static_cast<std::uint32_t>(options.samples)),
-        half_means_(half_means_of(options.filter)) {}
+        courses_(courses.begin(), courses.end()) {
+    if (std::ranges::find(courses_, Course::bent) != courses_.end())
+      half_means_ = half_means_of(options.filter);
+  }
 
   // The pixels of a tile whose values change, in the procedural mode. Every value depends on the
   // pixel alone.
@@ -97,6 +101,7 @@ class Refiner {
   const Options& options_;
   std::size_t outputs_;
   Patterns patterns_;
+  std::vector<Course> courses_;
   std::optional<HalfMeans> half_means_;
 };
 

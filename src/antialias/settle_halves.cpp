@@ -29,6 +29,7 @@ void Refiner::fill_halves(Work& work, RunStatus& status) const {
       grid.places(runs[k], work.places.x.data() + count, work.places.y.data() + count);
     const Results& results = program_.run(work, status);
     for (std::size_t o = 0; o < outputs_; ++o) {
+      if (courses_[o] != Course::bent) continue;
       const float* from = results[o];
       for (std::size_t k = first; k < next; from += size(k++))
         std::copy_n(from, size(k), grid.at(runs[k].kind, o, runs[k].x, runs[k].y));
@@ -37,7 +38,7 @@ void Refiner::fill_halves(Work& work, RunStatus& status) const {
 }
 
 // Means are written at the end of the result; where one is no finite number the pixel stays as it
-// is.
+// is, and so do outputs that are even or made of stored pixels.
 void Refiner::settle_halves(const Tile& tile, Refined& result, Counts& counts, Work& work,
                             RunStatus& status) const {
   const std::vector<Pixel>& pixels = work.halved;
@@ -60,6 +61,11 @@ void Refiner::settle_halves(const Tile& tile, Refined& result, Counts& counts, W
     const auto count = static_cast<std::size_t>(pixels[end - 1].x - first + 1);
     const std::size_t here = tile.at(first, y);
     for (std::size_t o = 0; o < outputs_; ++o) {
+      float* const means = work.sums.data() + o * room;
+      if (courses_[o] != Course::bent) {
+        std::copy_n(tile.planes[o] + here, count, means);
+        continue;
+      }
       const int x = first - tile.rect.x0, row = y - tile.rect.y0;
       const HalfRow at{tile.path() + here,
                        tile.planes[o] + here,
@@ -68,7 +74,7 @@ void Refiner::settle_halves(const Tile& tile, Refined& result, Counts& counts, W
                        grid.at(Half::corner, o, x, row),
                        tile.area.width(),
                        static_cast<std::ptrdiff_t>(grid.row())};
-      steps().mean_of_halves(at, *half_means_, count, work.sums.data() + o * room);
+      steps().mean_of_halves(at, *half_means_, count, means);
     }
     for (; i < end; ++i) {
       const auto at = static_cast<std::size_t>(pixels[i].x - first);
@@ -76,7 +82,7 @@ void Refiner::settle_halves(const Tile& tile, Refined& result, Counts& counts, W
       result.pixels[kept] = pixels[i];
       for (std::size_t o = 0; o < outputs_; ++o) {
         const float mean = work.sums[o * room + at];
-        is_finite = is_finite && std::isfinite(mean);
+        is_finite = is_finite && (courses_[o] != Course::bent || std::isfinite(mean));
         result.values[o][kept] = mean;
       }
       kept += is_finite;

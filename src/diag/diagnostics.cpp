@@ -86,6 +86,21 @@ int edit_distance(std::string_view a, std::string_view b, int bound) {
   return previous.back();
 }
 
+// The shortest candidate of several words whose first or last the name is; first ones are better.
+std::string longer_name(std::string_view name, const std::vector<std::string>& candidates) {
+  constexpr std::size_t shortest = 3;
+  if (name.size() < shortest) return {};
+  std::string_view best;
+  std::tuple<bool, std::size_t, std::string_view> best_rank;
+  for (const std::string& candidate : candidates) {
+    const bool begins = candidate.starts_with(std::string(name) + "_");
+    if (!begins && !candidate.ends_with("_" + std::string(name))) continue;
+    const std::tuple rank(!begins, candidate.size(), std::string_view(candidate));
+    if (best.empty() || rank < best_rank) best = candidate, best_rank = rank;
+  }
+  return std::string(best);
+}
+
 }  // namespace
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates) {
@@ -104,7 +119,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
     const std::tuple rank(distance, candidate.front() != name.front(), std::string_view(candidate));
     if (best.empty() || rank < best_rank) best = candidate, best_rank = rank;
   }
-  return std::string(best);
+  return best.empty() ? longer_name(name, candidates) : std::string(best);
 }
 
 }  // namespace pse

@@ -55,7 +55,7 @@ std::string print_text(const Diagnostics& diagnostics, const SourceMap& sources,
 std::string print_json(const Diagnostics& diagnostics, const SourceMap& sources);
 
 // The candidate nearest to `name` by edit distance, if one is near enough to be worth naming; else
-// empty.
+// one that begins or ends with it as a whole word (`hsv`: `hsv_to_rgb`); else empty.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
 
 }  // namespace pse

@@ -63,6 +63,16 @@ TEST(NearestName, FindsMisspellings) {
   EXPECT_EQ(nearest_name("sine", names), "sin");
 }
 
+TEST(NearestName, FindsALongerNameByAWord) {
+  const std::vector<std::string> names = {"rgb_to_hsv", "hsv_to_rgb", "soft_sphere", "sphere_span",
+                                          "soft_box",   "hot_box_2",  "noise"};
+  EXPECT_EQ(nearest_name("hsv", names), "hsv_to_rgb");
+  EXPECT_EQ(nearest_name("box", names), "soft_box");
+  EXPECT_EQ(nearest_name("sphere", names), "sphere_span");
+  EXPECT_EQ(nearest_name("to", names), "");
+  EXPECT_EQ(nearest_name("here", names), "");
+}
+
 TEST(NearestName, IsSilentWhereNothingIsNear) {
   const std::vector<std::string> names = {"turbulence", "norm", "x"};
   EXPECT_EQ(nearest_name("marble", names), "");

@@ -155,6 +155,16 @@ TEST(Halves, TheSameBitsHoweverTheyAreRun) {
   }
 }
 
+TEST(Halves, EvenOutputsKeepTheirBits) {
+  const std::string program =
+      "c = Noise(px / 2, py / 2)\nd = 0.3 * x - 0.7 * y\ne = floor(px) % 2\n";
+  const Picture ours = render(program, {.antialias = procedural()});
+  const Picture none = render(program, {.antialias = plain()});
+  EXPECT_GT(ours.counts.supersampled, 32 * 32 / 2);
+  EXPECT_NE(ours.plane(), none.plane());
+  for (const char* name : {"d", "e"}) EXPECT_EQ(ours.plane(name), none.plane(name)) << name;
+}
+
 // A single sample of a spark weighs less than nothing where it lies in the next pixel.
 TEST(Halves, NoLightIsTakenAway) {
   const Picture picture = render(

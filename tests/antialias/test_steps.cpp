@@ -181,6 +181,57 @@ TEST_F(StepsOfAntialiasing, FindTheSameFinePixels) {
   }
 }
 
+// Against the same written out for one pixel.
+TEST_F(StepsOfAntialiasing, MeanHalvesToTheSameBits) {
+  const HalfMeans by{{0.55f, 0.107f, 0.0125f, -0.008f}, {0.5875f, 0.106f, -0.0025f, 0}};
+  constexpr std::ptrdiff_t row = 40, half_row = 36;
+  constexpr std::size_t count = 34, first = row + 1;
+  std::vector<float> path(3 * row + 64), middles(path.size()), beside(path.size()),
+      below(path.size()), corner(path.size());
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    path[i] = number(0, 1) < 0.9f ? 3 : 4;
+    for (auto* list : {&middles, &beside, &below, &corner}) (*list)[i] = any_number();
+  }
+  const HalfRow at{path.data() + first,
+                   middles.data() + first,
+                   beside.data(),
+                   below.data(),
+                   corner.data(),
+                   row,
+                   half_row};
+  std::vector<float> expected(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float* m = at.middles + i;
+    const float* way = at.path + i;
+    const bool has_next =
+        way[-1] == way[0] && way[1] == way[0] && way[-row] == way[0] && way[row] == way[0];
+    const HalfWeights& w = has_next ? by.with_next : by.alone;
+    const float sides = (beside[i] + beside[i + 1]) + (below[i] + below[i + half_row]);
+    const float corners =
+        (corner[i] + corner[i + 1]) + (corner[i + half_row] + corner[i + half_row + 1]);
+    const float others = has_next ? (m[-1] + m[1]) + (m[-row] + m[row]) : 2 * m[0] + 2 * m[0];
+    float mean = w.middle * m[0] + w.side * sides + w.corner * corners + w.next * others;
+    std::vector<float> seen = {m[0],
+                               beside[i],
+                               beside[i + 1],
+                               below[i],
+                               corner[i],
+                               corner[i + 1],
+                               below[i + half_row],
+                               corner[i + half_row],
+                               corner[i + half_row + 1]};
+    if (has_next) seen.insert(seen.end(), {m[-1], m[1], m[-row], m[row]});
+    if (std::abs(mean) < 3e38f)
+      mean = std::clamp(mean, *std::ranges::min_element(seen), *std::ranges::max_element(seen));
+    expected[i] = mean;
+  }
+  for (const Steps* steps : runnable()) {
+    std::vector<float> means(count + HalfGrid::beyond);
+    steps->mean_of_halves(at, by, count, means.data());
+    EXPECT_EQ(bits_of(means.data(), count), bits_of(expected.data(), count));
+  }
+}
+
 // Against a loop over pixels and directions; planes that are not wanted stay as they are.
 TEST_F(StepsOfAntialiasing, SmoothToTheSameBits) {
   const Smoothing by{0.0375f, -0.0078125f};

@@ -51,6 +51,12 @@ TEST_F(SurfaceEdges, WherePartsOfAMeshMeet) {
   expect_clean({"lit.pse", "--on", "walls.obj", "--res", "96x96"});
 }
 
+// No edge at all but the outline: what changes within a pixel is sampled on objects too.
+TEST_F(SurfaceEdges, NoiseOfAFewPixels) {
+  file("noise.pse", "color = white * (0.5 + 0.5 * noise(20 * point))\n");
+  expect_clean({"noise.pse", "--on", "torus", "--res", "128x128"});
+}
+
 // A loop that searches within a program for objects: its ends are no output.
 TEST_F(SurfaceEdges, WhereASearchEndsElsewhere) {
   file("search.pse",

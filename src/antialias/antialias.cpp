@@ -286,6 +286,7 @@ class Execution {
   // Moves the tile's rows together, smooth where that is wanted.
   void cut_apron(const Tile& tile) const {
     std::vector<float*> bent;
+    bent.reserve(programs_.outputs);
     for (std::size_t o = 0; o < programs_.outputs; ++o) {
       float* to = tile.planes[o];
       if (is_smooth(o)) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "antialias/fine.h"
+#include "antialias/kept.h"
 #include "antialias/path.h"
 #include "antialias/smooth.h"
 #include "antialias/steps.h"
@@ -47,6 +48,7 @@ class Execution {
         options_(options),
         status_(status),
         counts_(counts),
+        kept_(programs.kept ? programs.kept : std::make_shared<Kept>()),
         tiling_(options.window, options.tile_width, options.tile_height),
         paths_end_(programs.shown->module().outputs.size()) {
     const auto& names = programs.shown->module().outputs;
@@ -60,6 +62,8 @@ class Execution {
   RunResult run() {
     const auto start = std::chrono::steady_clock::now();
     RunResult result = compute();
+    for (auto& work : works_) kept_->give(std::move(work));
+    works_.clear();
     result.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return result;
@@ -88,7 +92,9 @@ class Execution {
     apron_ = procedural_ ? apron_of(antialias_.filter) : smooths_ ? 1 : 0;
 
     std::optional<Refiner> all;
-    if (supersample_) all.emplace(*quiet.runner, nullptr, antialias_, programs_.outputs, programs_.courses);
+    if (supersample_)
+      all.emplace(*quiet.runner, nullptr, antialias_, patterns(), programs_.outputs,
+                  programs_.courses);
     BatchPlan plan;
     plan.batches = tiling_.count();
     plan.capacity =
@@ -215,7 +221,8 @@ class Execution {
         edge_program_.emplace(**program, host_, unchecked);
         edges = &*edge_program_->runner;
       }
-      refiner_.emplace(*quiet_->runner, edges, antialias_, programs_.outputs, programs_.courses);
+      refiner_.emplace(*quiet_->runner, edges, antialias_, patterns(), programs_.outputs,
+                       programs_.courses);
     });
     return refiner_ && !status_.cancel ? &*refiner_ : nullptr;
   }
@@ -235,6 +242,12 @@ class Execution {
                               programs_.outputs, *host_.stored);
     });
     return stored_refiner_ && !status_.cancel ? &*stored_refiner_ : nullptr;
+  }
+
+  // Asked for once at most.
+  const Patterns& patterns() {
+    patterns_ = kept_->patterns(antialias_.filter, static_cast<std::uint32_t>(antialias_.samples));
+    return *patterns_;
   }
 
   static std::vector<Pixel> pixels_of(const Rect& rect) {
@@ -273,6 +286,7 @@ class Execution {
   // Moves the tile's rows together, smooth where that is wanted.
   void cut_apron(const Tile& tile) const {
     std::vector<float*> bent;
+    bent.reserve(programs_.outputs);
     for (std::size_t o = 0; o < programs_.outputs; ++o) {
       float* to = tile.planes[o];
       if (is_smooth(o)) {
@@ -293,7 +307,7 @@ class Execution {
     explicit Borrowed(Execution& from) : from_(from) {
       const std::lock_guard lock(from.mutex_);
       if (from.works_.empty()) {
-        work_ = std::make_unique<Work>();
+        work_ = from.kept_->take();
       } else {
         work_ = std::move(from.works_.back());
         from.works_.pop_back();
@@ -320,6 +334,7 @@ class Execution {
   const ExecuteOptions& options_;
   RunStatus& status_;
   Counts& counts_;
+  const std::shared_ptr<Kept> kept_;
   const Tiling tiling_;
   static constexpr auto nowhere = static_cast<std::size_t>(-1);
   std::size_t paths_end_;  // outputs before this are the program's own, their path and ends
@@ -327,6 +342,7 @@ class Execution {
   int apron_ = 0;
   bool procedural_ = false, supersample_ = false, stored_ = false, smooths_ = false;
   Smoothing smoothing_;
+  std::shared_ptr<const Patterns> patterns_;
   const Placed* quiet_ = nullptr;
   std::once_flag once_;
   std::optional<Placed> edge_program_;

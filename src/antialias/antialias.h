@@ -21,6 +21,7 @@
 //   smooth     the mean of what bends between edges, from neighbouring samples; of outputs that
 //              bend (courses)
 //   places     running a program anywhere (stream/sample_source.h)
+//   kept       what a picture leaves for the next one
 //   stored     where samples are known at pixels only: conditions laid open (force), their values
 //              fitted to neighbours (fit)
 //

@@ -31,6 +31,8 @@ class Filter {
   float reach(float nx, float ny) const;
   float reach() const;  // in any direction
 
+  bool operator==(const Filter&) const = default;
+
   bool is_round() const { return kind_ != FilterKind::box; }
 
   // Of a place under the kernel, along any direction; in pixels squared.

@@ -99,7 +99,8 @@ const Results& PlaceRunner::run(Work& work, RunStatus& status) const {
   const std::span<const double> x = work.places.x, y = work.places.y;
   work.results.resize(outputs, count);
   const std::span<float* const> in = inputs(work).pointers();
-  std::vector<float*> out(outputs);
+  std::vector<float*>& out = work.outputs;
+  out.resize(outputs);
   for (std::size_t first = 0; first < count && !status.stopped(); first += batch) {
     const std::size_t size = std::min(batch, count - first);
     fill(x.subspan(first, size), y.subspan(first, size), in);

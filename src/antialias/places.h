@@ -86,6 +86,7 @@ struct Work {
   Results results;             // of the last run
   Scratch scratch;
   std::vector<std::pair<const PlaceRunner*, Planes>> inputs;
+  std::vector<float*> outputs;  // of a run
   std::vector<std::int32_t> flags;
   std::vector<float> sums, lows, highs;
   Settling settling;

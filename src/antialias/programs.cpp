@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "antialias/force.h"
+#include "antialias/kept.h"
 #include "antialias/path.h"
 #include "ir/expectations.h"
 #include "passes/passes.h"
@@ -29,6 +30,7 @@ std::expected<Programs, std::string> compile_programs(CompiledFront front,
   }
   Programs programs;
   programs.outputs = front.module.outputs.size();
+  programs.kept = std::make_shared<Kept>();
   const auto finish = [&](CompiledFront&& with_checks) -> std::expected<Programs, std::string> {
     std::optional<CompiledFront> without;
     if (mode != Mode::none) {

@@ -10,6 +10,8 @@
 
 namespace pse::antialias {
 
+class Kept;  // kept.h
+
 enum class Mode : std::uint8_t {
   none,         // one sample in the middle of each pixel
   procedural,   // edges found in the program; more samples only where that is not enough
@@ -42,6 +44,8 @@ struct Programs {
   bool has_only_noise = false;
   // How fine some of it is is not told (Noises::others).
   bool has_untold_noise = false;
+  // From picture to picture; null: nothing is.
+  std::shared_ptr<Kept> kept;
 };
 
 // What becomes of a program's expectations (ir/expectations.h): reported by the host, which binds

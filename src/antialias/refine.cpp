@@ -213,6 +213,7 @@ Refined Refiner::refine(const Tile& tile, Work& work, RunStatus& status, Counts&
   Refined result({}, outputs_);
   if (found.empty() && fine.empty()) return result;
   counts.filtered += static_cast<std::int64_t>(found.size() + fine.size());
+  result.reserve(found.size() + fine.size());
   work.unclear.clear(), work.bent.clear(), work.between.clear();
   work.noisy.clear(), work.halved.clear();
   CrossingLists inner = work.crossings.lists(found.size());

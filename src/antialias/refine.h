@@ -49,14 +49,15 @@ struct Refined {
 class Refiner {
  public:
   // `edges` may be null: then everything is supersampled. `courses`: those of the outputs; without
-  // any that is bent, samples half a pixel apart are not taken.
+  // any that is bent, samples half a pixel apart are not taken. `patterns`: of the options' kernel
+  // and samples. All must outlive this.
   Refiner(const PlaceRunner& program, const PlaceRunner* edges, const Options& options,
-          std::size_t outputs, std::span<const Course> courses)
+          const Patterns& patterns, std::size_t outputs, std::span<const Course> courses)
       : program_(program),
         edges_(edges),
         options_(options),
+        patterns_(patterns),
         outputs_(outputs),
-        patterns_(options.filter, static_cast<std::uint32_t>(options.samples)),
         courses_(courses.begin(), courses.end()) {
     if (std::ranges::find(courses_, Course::bent) != courses_.end())
       half_means_ = half_means_of(options.filter);
@@ -99,8 +100,8 @@ class Refiner {
   const PlaceRunner& program_;
   const PlaceRunner* edges_;
   const Options& options_;
+  const Patterns& patterns_;
   std::size_t outputs_;
-  Patterns patterns_;
   std::vector<Course> courses_;
   std::optional<HalfMeans> half_means_;
 };

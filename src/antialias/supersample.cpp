@@ -205,7 +205,6 @@ void Refiner::settle(const Tile& tile, Refined& result, Counts& counts, Work& wo
   const std::size_t size = unclear.size() * outputs_;
   if (s.sums.size() < size) s.sums.resize(2 * size), s.ranges.resize(2 * size);
   std::vector<float> values(outputs_);
-  result.reserve(result.pixels.size() + unclear.size());
   const auto done = [&](std::size_t i, const float* of, std::size_t apart, float number) {
     result.pixels.push_back(unclear[i].pixel);
     for (std::size_t o = 0; o < outputs_; ++o) result.values[o].push_back(of[o * apart] / number);

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <set>
 
+#include "antialias/kept.h"
 #include "antialias/path.h"
 #include "app/input_images.h"
 #include "app/knobs.h"
@@ -247,6 +248,7 @@ antialias::Programs Surfaces::combine(std::vector<SurfaceProgram> programs, anti
   };
   antialias::Programs all;
   all.has_paths = mode == antialias::Mode::procedural;
+  all.kept = std::make_shared<antialias::Kept>();
   // Of a frame nothing is known that holds for all objects.
   all.has_untold_noise = true;
   all.shown = all.quiet = add(shown, all.has_paths);

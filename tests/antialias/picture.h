@@ -71,7 +71,7 @@ struct Notes {
   }
 };
 
-inline Picture render(const std::string& text, const PictureOptions& options = {}) {
+inline Programs compiled(const std::string& text, const PictureOptions& options = {}) {
   CompileOptions compile;
   compile.interpret = options.interpret;
   compile.codegen.width = options.vector_width;
@@ -81,13 +81,16 @@ inline Picture render(const std::string& text, const PictureOptions& options = {
       lowered(text), compile, options.antialias.mode, image_plane_changes(std::nullopt),
       options.antialias.filter, options.reports ? Expectations::reported : Expectations::dropped);
   if (!programs) throw std::runtime_error(programs.error());
+  return *programs;
+}
 
+inline Picture render(const Programs& programs, const PictureOptions& options = {}) {
   const ImagePlane plane{.width = options.width, .height = options.height};
   const Rect window =
       options.clip.width() > 0 ? options.clip : Rect{0, 0, options.width, options.height};
   Picture picture{.width = window.width(), .height = window.height()};
-  const ir::Module& module = programs->shown->module();
-  for (std::size_t o = 0; o < programs->outputs; ++o) {
+  const ir::Module& module = programs.shown->module();
+  for (std::size_t o = 0; o < programs.outputs; ++o) {
     picture.names.push_back(module.outputs[o].name);
     picture.planes.emplace_back(
         static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height), -99.0f);
@@ -112,7 +115,7 @@ inline Picture render(const std::string& text, const PictureOptions& options = {
   RunStatus status;
   const TileSource source = image_plane_source(
       module, plane, {window.x0 - 2, window.y0 - 2, window.x1 + 2, window.y1 + 2});
-  picture.result = execute(*programs, host, options.antialias, source, sink,
+  picture.result = execute(programs, host, options.antialias, source, sink,
                            {.window = window,
                             .tile_width = options.tile,
                             .tile_height = options.tile,
@@ -120,6 +123,10 @@ inline Picture render(const std::string& text, const PictureOptions& options = {
                             .ordered_sink = true},
                            status, picture.counts);
   return picture;
+}
+
+inline Picture render(const std::string& text, const PictureOptions& options = {}) {
+  return render(compiled(text, options), options);
 }
 
 inline Options plain() { return {.mode = Mode::none}; }

@@ -65,7 +65,9 @@ TEST(Path, OutputsOfRandomProgramsKeepTheirBitsAndEdgesOfAllAreValid) {
     }
   }
   EXPECT_GT(with_jumps, count_programs() / 4);
-  if (count_programs() >= 50) EXPECT_GT(with_ends, 0);
+  if (count_programs() >= 50) {
+    EXPECT_GT(with_ends, 0);
+  }
 }
 
 struct Way {

@@ -13,7 +13,8 @@ namespace {
 constexpr float margin = 0.04f;
 
 Four distance(const Line& line, const Offsets& offsets, std::size_t k) {
-  return line.distance + (line.nx * load<Four>(&offsets.x[k]) + line.ny * load<Four>(&offsets.y[k]));
+  return line.distance +
+         (line.nx * load<Four>(&offsets.x[k]) + line.ny * load<Four>(&offsets.y[k]));
 }
 
 // Regions are numbered by the sides of the first and of the second line.

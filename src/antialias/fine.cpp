@@ -142,8 +142,8 @@ class Search {
 
 }  // namespace
 
-Noises find_noise(const ir::Module& module, const Decisions& decisions,
-                  const InputChanges& changes, const Slice& decided) {
+Noises find_noise(const ir::Module& module, const Decisions& decisions, const InputChanges& changes,
+                  const Slice& decided) {
   return Search(module, decisions, changes).find_noise(decided);
 }
 

@@ -27,8 +27,8 @@ struct Noises {
 
 // Fineness is dear to tell of what is asked at places that are made of other noise, or that do not
 // come from a flat picture. Values have their rates; `decided`: what jumps are computed from.
-Noises find_noise(const ir::Module& module, const Decisions& decisions,
-                  const InputChanges& changes, const passes::Slice& decided);
+Noises find_noise(const ir::Module& module, const Decisions& decisions, const InputChanges& changes,
+                  const passes::Slice& decided);
 
 // Likewise of the instructions with one result that are wanted, those whose slopes are cheap to
 // tell.

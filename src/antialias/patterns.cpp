@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t sets = 16;  // a power of 2
 constexpr std::size_t at_first = 16;
-constexpr std::size_t beyond = 3;    // offsets are read four at a time
+constexpr std::size_t beyond = 3;  // offsets are read four at a time
 
 }  // namespace
 

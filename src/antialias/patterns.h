@@ -1,7 +1,7 @@
 // Where the samples of a pixel lie: points spread evenly (spread.h) and drawn from the pixel's
 // kernel (filter.h), so that all weigh the same. There are some sets of them, made once for a
-// picture, and each pixel takes one by chance, so that no grid shows. The later samples of most sets
-// are made when they are asked for.
+// picture, and each pixel takes one by chance, so that no grid shows. The later samples of most
+// sets are made when they are asked for.
 #pragma once
 
 #include <cstdint>

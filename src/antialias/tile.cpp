@@ -8,8 +8,8 @@ namespace pse::antialias {
 int apron_of(const Filter& filter) { return filter.reach() > 1.01f ? 2 : 1; }
 
 std::span<const Pixel> find_edge_pixels(const Tile& tile, const Filter& filter, Found& found) {
-  const auto samples = static_cast<std::size_t>(tile.area.width()) *
-                       static_cast<std::size_t>(tile.area.height());
+  const auto samples =
+      static_cast<std::size_t>(tile.area.width()) * static_cast<std::size_t>(tile.area.height());
   const auto pixels =
       static_cast<std::size_t>(tile.rect.width()) * static_cast<std::size_t>(tile.rect.height());
   const auto grow = [](auto& list, std::size_t size) {

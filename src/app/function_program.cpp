@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <initializer_list>
 #include <set>
 
@@ -88,6 +89,20 @@ bool sets_at_top(const lang::Program& tree, const std::string& name) {
   std::set<std::string> set_names;
   lower::collect_assigned(tree.body, set_names);
   return set_names.contains(name);
+}
+
+std::string hypertexture_line(const lang::Program& tree) {
+  if (required_parameters(tree, "density") < 1) return "";
+  std::set<std::string> set_names;
+  lower::collect_assigned(tree.body, set_names);
+  const auto is_written = [](const std::string& name) {
+    return name.front() != '_' && std::isupper(static_cast<unsigned char>(name.front())) == 0;
+  };
+  if (std::ranges::any_of(set_names, is_written)) return "";
+  std::string line = "color = hypertexture(density";
+  for (const char* name : {"compute_color", "compute_shading", "init_density"})
+    if (required_parameters(tree, name) >= 0) line += fmt::format(", {0} = {0}", name);
+  return line + ")\n";
 }
 
 std::string calls_at_point(const lang::Program& tree, const std::vector<std::string>& names) {

@@ -22,6 +22,11 @@ std::string density_wants_more(const lang::Program& tree);
 // Whether the program sets `name` outside its functions.
 bool sets_at_top(const lang::Program& tree, const std::string& name);
 
+// The line that makes a picture of a program which says how dense space is and sets nothing that
+// could be written: hypertexture() with the chapter's functions that the program has. Empty where
+// there is no `density`, or something is set.
+std::string hypertexture_line(const lang::Program& tree);
+
 // The first call of the function `name` in what the program sets outside its functions.
 std::optional<Span> find_call(const lang::Program& tree, const std::string& name);
 

@@ -83,6 +83,15 @@ void show_density(ProgramFile& program) {
                             "color = [density density density]\nalpha = 1\n");
 }
 
+// Makes a program that is a density and no more a picture.
+void show_matter(ProgramFile& program) {
+  Diagnostics ignored;
+  const lang::Program tree = lang::parse(program.sources, program.file, ignored);
+  if (ignored.has_errors()) return;  // the compiler reports them
+  const std::string line = hypertexture_line(tree);
+  if (!line.empty()) append_lines(program, line);
+}
+
 }  // namespace
 
 Exit render_command(Session& session) {
@@ -103,7 +112,10 @@ Exit render_command(Session& session) {
     program.file = program.sources.add("<trace>", trace_program);
   else
     program = read_program(options.program, session);
-  if (options.slice) show_density(program);
+  if (options.slice)
+    show_density(program);
+  else if (!wants_surfaces(options) && options.images.empty())
+    show_matter(program);
   PrepassStage prepass;
   if (options.prepass > 0)
     if (const Exit stopped = prepass.run(session, options, program, settings, signals);

@@ -431,6 +431,32 @@ TEST_F(Render, ASnapshotOnSigusr1) {
   EXPECT_EQ(snapshot.at(snapshot.spec.find("R"), 63, 63), 0.0f);
 }
 
+// A density and the chapter's other functions are a picture by themselves.
+TEST_F(Render, ADensityAloneIsAPicture) {
+  const std::string matter =
+      "Size = 0.7\nfunction density(p)\n    return soft_sphere(p, Size, 0.3)\n"
+      "function compute_color(d)\n    return [0.3 0.7 0.4]\n";
+  file("alone.pse", matter);
+  file("said.pse", matter + "color = hypertexture(density, compute_color)\n");
+  const auto pixels = [&](const std::vector<std::string>& arguments) {
+    std::vector<std::string> all = {"render"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    all.insert(all.end(), {"--res", "24x24", "-o", "out.png"});
+    const Ended ended = pse(all);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    const std::string png = read("out.png");
+    return png.substr(png.find("IDAT"));  // the texts before it are others
+  };
+  const std::string said = pixels({"said.pse"});
+  EXPECT_GT(said.size(), 500u);
+  EXPECT_EQ(pixels({"alone.pse"}), said);
+  EXPECT_EQ(pixels({"alone.pse", "--prepass", "4"}), said);
+  EXPECT_NE(pixels({"alone.pse", "Size=0.4"}), said);
+  // What sets something says itself what is seen.
+  file("set.pse", matter + "color = [0.1 0.2 0.3]\n");
+  EXPECT_NE(pixels({"set.pse"}), said);
+}
+
 TEST_F(Render, ModulesAreFoundBesideTheProgramAndOnThePath) {
   file("a.pse", "import shades\ncolor = shade(u)\n");
   const std::vector<std::string> words = {"render", "a.pse", "-o", "a.exr", "--res", "2x2"};

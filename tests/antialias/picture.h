@@ -137,4 +137,25 @@ inline Options procedural(FilterKind kind = FilterKind::cubic) {
   return {.mode = Mode::procedural, .samples = 64, .filter = Filter(kind)};
 }
 
+// The same bits in tiles of other sizes, by more threads, in other widths, interpreted, and where a
+// part of the picture is drawn alone.
+inline void expect_same_bits(const std::string& program) {
+  PictureOptions options{.width = 75, .height = 41, .tile = 512, .antialias = procedural()};
+  const Picture first = render(program, options);
+  for (const int tile : {8, 33, 64}) {
+    options.tile = tile, options.threads = tile == 33 ? 3 : 1;
+    EXPECT_EQ(render(program, options).planes, first.planes) << program << tile;
+  }
+  for (const int width : {1, 4, 16}) {
+    options.vector_width = width;
+    EXPECT_EQ(render(program, options).planes, first.planes) << program << width;
+  }
+  options.interpret = true;
+  EXPECT_EQ(render(program, options).planes, first.planes) << program;
+  options.clip = {20, 10, 50, 30};
+  const Picture part = render(program, options);
+  for (int y = 10; y < 30; ++y)
+    for (int x = 20; x < 50; ++x) EXPECT_EQ(part.at(x - 20, y - 10), first.at(x, y)) << program;
+}
+
 }  // namespace pse::antialias::test

@@ -135,24 +135,8 @@ TEST(Halves, AreSeveralTimesNearerThan16Samples) {
 TEST(Halves, TheSameBitsHoweverTheyAreRun) {
   for (const std::string& program :
        {std::string(zone_plate),
-        std::string("c = Noise(px / 1.7, py / 1.7)\nif c > 0.1\n    c = 1 - c\n")}) {
-    PictureOptions options{.width = 75, .height = 41, .tile = 512, .antialias = procedural()};
-    const Picture first = render(program, options);
-    for (const int tile : {8, 33, 64}) {
-      options.tile = tile, options.threads = tile == 33 ? 3 : 1;
-      EXPECT_EQ(render(program, options).planes, first.planes) << program << tile;
-    }
-    for (const int width : {1, 4, 16}) {
-      options.vector_width = width;
-      EXPECT_EQ(render(program, options).planes, first.planes) << program << width;
-    }
-    options.interpret = true;
-    EXPECT_EQ(render(program, options).planes, first.planes) << program;
-    options.clip = {20, 10, 50, 30};
-    const Picture part = render(program, options);
-    for (int y = 10; y < 30; ++y)
-      for (int x = 20; x < 50; ++x) EXPECT_EQ(part.at(x - 20, y - 10), first.at(x, y));
-  }
+        std::string("c = Noise(px / 1.7, py / 1.7)\nif c > 0.1\n    c = 1 - c\n")})
+    expect_same_bits(program);
 }
 
 TEST(Halves, EvenOutputsKeepTheirBits) {

@@ -109,25 +109,8 @@ TEST(Smooth, NearerThan16Samples) {
 
 TEST(Smooth, TheSameBitsHoweverItIsRun) {
   for (const char* program : {"c = Noise(px / 3, py / 3)\n",
-                              "c = Noise(px / 3, py / 3)\nif c > 0.1\n    c = y * y - c\n"}) {
-    PictureOptions options{.width = 75, .height = 41, .tile = 512, .antialias = procedural()};
-    const Picture first = render(program, options);
-    for (const int tile : {8, 33, 64}) {
-      options.tile = tile, options.threads = tile == 33 ? 3 : 1;
-      EXPECT_EQ(render(program, options).planes, first.planes) << program << tile;
-    }
-    for (const int width : {1, 4, 16}) {
-      options.vector_width = width;
-      EXPECT_EQ(render(program, options).planes, first.planes) << program << width;
-    }
-    options.interpret = true;
-    EXPECT_EQ(render(program, options).planes, first.planes) << program;
-    // A part of the picture is that part of it.
-    options.clip = {20, 10, 50, 30};
-    const Picture part = render(program, options);
-    for (int y = 10; y < 30; ++y)
-      for (int x = 20; x < 50; ++x) EXPECT_EQ(part.at(x - 20, y - 10), first.at(x, y));
-  }
+                              "c = Noise(px / 3, py / 3)\nif c > 0.1\n    c = y * y - c\n"})
+    expect_same_bits(program);
 }
 
 TEST(Smooth, WhatIsEvenKeepsItsBits) {
